@@ -1,0 +1,58 @@
+#include "core/base/names.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/base/error.h"
+
+namespace vernier {
+namespace {
+
+size_t levenshtein(std::string_view a, std::string_view b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t{0});
+  for (size_t i = 0; i < a.size(); ++i) {
+    size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (size_t j = 0; j < b.size(); ++j) {
+      const size_t substitute = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substitute});
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+std::string nearest_name(std::string_view name, std::span<const std::string> candidates) {
+  std::string best;
+  size_t best_distance = std::max<size_t>(2, name.size() / 3) + 1;
+  for (const auto& candidate : candidates) {
+    const size_t distance = levenshtein(name, candidate);
+    if (distance < best_distance) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+std::string unknown_name_message(std::string_view kind, std::string_view name,
+                                 std::span<const std::string> candidates) {
+  std::string message = "unknown " + std::string(kind) + " '" + std::string(name) + "'";
+  if (const auto nearest = nearest_name(name, candidates); !nearest.empty())
+    message += "; did you mean '" + nearest + "'?";
+  else
+    message += ";";
+  message += " There are: ";
+  for (size_t i = 0; i < candidates.size(); ++i) message += (i ? ", " : "") + candidates[i];
+  if (candidates.empty()) message += "none";
+  return message;
+}
+
+void throw_unknown_name(std::string_view kind, std::string_view name, std::span<const std::string> candidates) {
+  throw Error(ErrorKind::usage, unknown_name_message(kind, name, candidates));
+}
+
+}  // namespace vernier

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "core/math/vec.h"
+
+namespace vernier {
+
+/// Bound n u / (1 - n u) on the relative error of n chained float operations, u = 2^-24
+/// (Higham 2002, "Accuracy and Stability of Numerical Algorithms", lemma 3.1).
+constexpr float gamma_bound(int n) {
+  constexpr float unit_roundoff = std::numeric_limits<float>::epsilon() / 2;
+  return static_cast<float>(n) * unit_roundoff / (1 - static_cast<float>(n) * unit_roundoff);
+}
+
+inline float next_float_up(float v) { return std::nextafter(v, std::numeric_limits<float>::infinity()); }
+inline float next_float_down(float v) { return std::nextafter(v, -std::numeric_limits<float>::infinity()); }
+
+/// Ray origin beside a surface point p known to within +-error per axis: p moved along the unit normal n far enough
+/// that the true surface cannot lie between, to the side that `direction` leaves by
+/// (Pharr, Jakob, Humphreys 2023, "Physically Based Rendering", 4th ed., 6.8.6).
+inline Vec3f offset_ray_origin(const Vec3f& p, const Vec3f& error, const Vec3f& n, const Vec3f& direction) {
+  const float distance = dot(abs(n), error);
+  Vec3f offset = distance * n;
+  if (dot(direction, n) < 0) offset = -offset;
+  Vec3f origin = p + offset;
+  for (int axis = 0; axis < 3; ++axis) {
+    // The sum itself rounds; step away once more so that it cannot round back.
+    if (offset[axis] > 0) origin[axis] = next_float_up(origin[axis]);
+    if (offset[axis] < 0) origin[axis] = next_float_down(origin[axis]);
+  }
+  return origin;
+}
+
+}  // namespace vernier

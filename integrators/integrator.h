@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/math/ray.h"
+#include "core/math/vec.h"
+#include "core/sampling/sampler.h"
+
+namespace vernier {
+
+class Scene;
+
+/// Rays a sample has cast, by purpose.
+struct RayCounts {
+  uint64_t camera = 0, bounce = 0, shadow = 0;
+
+  RayCounts& operator+=(const RayCounts& other) {
+    camera += other.camera;
+    bounce += other.bounce;
+    shadow += other.shadow;
+    return *this;
+  }
+};
+
+/// One sample's answer: radiance arriving along the camera ray, W m^-2 sr^-1 in linear Rec.709 (or what `--show` asks).
+struct Estimate {
+  Rgb radiance{0, 0, 0};
+  RayCounts rays;
+};
+
+/// A way to estimate the light along a camera ray. Immutable while rendering; called from many threads.
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+
+  /// `sampler` stands at block 1 (block 0 belongs to the camera).
+  virtual Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler) const = 0;
+
+  /// Whether a second sample of a pixel can differ from the first, apart from its place in the pixel.
+  virtual bool uses_random_numbers() const { return true; }
+};
+
+/// What the command line can say of any integrator; each reads what it knows.
+struct IntegratorOptions {
+  int max_depth = 16;           ///< path vertices after the camera
+  std::string show = "normal";  ///< raycast: what to show
+  float ambient = 0;            ///< whitted: constant ambient radiance
+  float cutoff = 1e-3f;         ///< whitted: a recursive ray that would contribute less than this is not traced
+};
+
+/// One line of the table of integrators.
+struct IntegratorEntry {
+  std::string_view name;
+  std::string_view description;
+  std::unique_ptr<Integrator> (*make)(const IntegratorOptions&);
+};
+
+/// All integrators (integrators/registry.cpp).
+std::span<const IntegratorEntry> integrators();
+
+/// Names that raycast's IntegratorOptions::show takes.
+std::span<const std::string_view> raycast_shows();
+
+}  // namespace vernier

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/math/ray.h"
+#include "core/math/transform.h"
+#include "scene/description.h"
+
+namespace vernier {
+
+/// Where a ray meets a triangle: P = (1-u-v) v0 + u v1 + v v2, the convention of Moeller and Trumbore 1997 and of
+/// Embree. `instance` indexes Geometry::instances, `primitive` the triangles of its mesh.
+struct RawHit {
+  float t = 0, u = 0, v = 0;
+  uint32_t instance = 0, primitive = 0;
+};
+
+/// Decides whether a hit counts (alpha coverage). Must be a pure function of its arguments and callable from many
+/// threads.
+class HitFilter {
+ public:
+  virtual ~HitFilter() = default;
+  virtual bool accept(const Ray& ray, const RawHit& hit) const = 0;
+};
+
+/// Triangles in one coordinate system; the arrays must outlive the accelerator and be readable 16 bytes past the last
+/// position (Embree loads four floats).
+struct GeometryMesh {
+  std::span<const Vec3f> positions;
+  std::span<const Triangle> triangles;
+};
+
+struct GeometryInstance {
+  uint32_t mesh = 0;
+  Transform to_world;     ///< identity: the mesh is in world space already and needs no second level
+  bool filtered = false;  ///< ask Geometry::filter about hits on this instance
+};
+
+struct Geometry {
+  std::vector<GeometryMesh> meshes;
+  std::vector<GeometryInstance> instances;
+  const HitFilter* filter = nullptr;  ///< null unless some instance is filtered
+};
+
+struct AcceleratorStats {
+  double build_seconds = 0;
+  size_t bytes = 0;  ///< of the structure, without vertices and indices
+};
+
+/// Answers ray queries over fixed geometry. Rays may have any finite non-zero direction; an invalid ray (NaN, infinite
+/// origin, zero direction) misses. Triangles with a vertex that is not finite, or with no area, are never hit.
+/// Both sides of a triangle count. All queries are callable from many threads.
+class Accelerator {
+ public:
+  virtual ~Accelerator() = default;
+
+  /// The hit with the smallest t in (t_min, t_max).
+  virtual std::optional<RawHit> closest(const Ray& ray) const = 0;
+  /// Whether there is any hit in (t_min, t_max).
+  virtual bool occluded(const Ray& ray) const = 0;
+  /// Every hit in (t_min, t_max), by increasing t; replaces the contents of `sorted`. Each triangle once.
+  virtual void all_hits(const Ray& ray, std::vector<RawHit>& sorted) const = 0;
+
+  virtual AcceleratorStats stats() const = 0;
+};
+
+/// One line of the table of accelerators.
+struct AcceleratorEntry {
+  std::string_view name;
+  std::string_view description;
+  std::unique_ptr<Accelerator> (*build)(const Geometry&);
+};
+
+/// All accelerators, the default first (scene/accel/registry.cpp).
+std::span<const AcceleratorEntry> accelerators();
+
+}  // namespace vernier

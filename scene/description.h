@@ -1,0 +1,91 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/image/image.h"
+#include "core/math/transform.h"
+#include "materials/material_description.h"
+#include "materials/texture.h"
+
+// What a scene file says, before anything is built from it: plain data, metres, radians, +y up, right-handed.
+
+namespace vernier {
+
+using Triangle = std::array<uint32_t, 3>;
+
+/// Triangles of one material. Attribute arrays are empty when absent, else as long as positions.
+struct MeshDescription {
+  std::string name;
+  std::vector<Vec3f> positions;
+  std::vector<Triangle> triangles;  ///< counter-clockwise seen from the front; every index is in range
+  std::vector<Vec3f> normals;       ///< unit; empty: flat shading
+  std::vector<Vec4f> tangents;      ///< xyz unit, w = +-1 handedness: bitangent = w cross(n, t)
+  std::array<std::vector<Vec2f>, 2> texcoords;
+  std::vector<Vec4f> colors;  ///< linear RGBA, multiplies the base colour
+};
+
+/// A mesh placed in the world. Several may share a mesh.
+struct InstanceDescription {
+  std::string name;
+  uint32_t mesh = 0;
+  uint32_t material = 0;
+  Transform to_world;
+};
+
+/// Looks along its local -z, +y up.
+struct CameraDescription {
+  enum class Kind { perspective, orthographic };
+  std::string name;
+  Kind kind = Kind::perspective;
+  float yfov = 0.8f;            ///< perspective: full vertical angle
+  float aspect = 0;             ///< width over height; 0: that of the image
+  float xmag = 1, ymag = 1;     ///< orthographic: half width and half height in metres
+  Transform to_world;
+};
+
+/// KHR_lights_punctual. Position is the origin; spot and directional lights shine along local -z.
+struct PunctualLightDescription {
+  enum class Kind { point, spot, directional };
+  std::string name;
+  Kind kind = Kind::point;
+  Rgb color{1, 1, 1};
+  float intensity = 1;  ///< candela (point, spot) or lux (directional), taken as W/sr and W/m^2
+  float range = std::numeric_limits<float>::infinity();
+  float inner_cone = 0, outer_cone = 0.785398163f;  ///< half angles
+  Transform to_world;
+};
+
+/// Radiance from everywhere, as a latitude-longitude picture: u = atan2(z, x) / 2pi + 1/2, v = acos(y) / pi.
+struct EnvironmentDescription {
+  std::shared_ptr<const Image> picture;  ///< three channels
+  float rotation = 0;                    ///< radians counter-clockwise about +y, applied to the picture
+  float scale = 1;
+};
+
+/// How one glTF feature of the file is honoured.
+struct FeatureUse {
+  enum class Status { exact, approximated, ignored };
+  std::string name;  ///< extension or property
+  Status status = Status::exact;
+  std::string note;  ///< how approximated, why ignored; with the clause of the specification where it helps
+};
+
+struct SceneDescription {
+  std::string source;  ///< file it came from
+  std::string hash;    ///< of every byte read: scene file, buffers, images
+  std::vector<MeshDescription> meshes;
+  std::vector<MaterialDescription> materials;
+  std::vector<Texture> textures;
+  std::vector<InstanceDescription> instances;
+  std::vector<CameraDescription> cameras;
+  std::vector<PunctualLightDescription> lights;
+  std::shared_ptr<const EnvironmentDescription> environment;  ///< null: none
+  std::vector<FeatureUse> features;
+  std::vector<Notice> notices;
+};
+
+}  // namespace vernier

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "core/math/ray.h"
+#include "core/math/rounding.h"
+#include "core/math/vec.h"
+
+namespace vernier {
+
+/// A point on the scene's surface, with what is known of its rounding error. The only place rays are offset.
+struct SurfacePoint {
+  Vec3f position;      ///< world, from barycentrics
+  Vec3f error;         ///< bound on |position - the exact point of the triangle| per axis
+  Vec3f ng;            ///< unit geometric normal of the triangle's front (counter-clockwise) side
+  float t = 0;         ///< ray parameter of the hit
+  float u = 0, v = 0;  ///< barycentrics of vertices 1 and 2
+  uint32_t instance = 0, primitive = 0;
+  bool front = true;   ///< met from the front side
+
+  /// Ray leaving the surface along w (world, any length), free of self-intersection.
+  Ray spawn(const Vec3f& w) const { return {offset_ray_origin(position, error, ng, w), 0, w}; }
+
+  /// Segment to another surface point, both ends moved off their surfaces; t in (0, 1) covers it.
+  Ray spawn_to(const Vec3f& target, const Vec3f& target_error, const Vec3f& target_normal) const {
+    const Vec3f rough = target - position;
+    const Vec3f from = offset_ray_origin(position, error, ng, rough);
+    const Vec3f to = offset_ray_origin(target, target_error, target_normal, -rough);
+    return {from, 0, to - from, 1};
+  }
+};
+
+}  // namespace vernier

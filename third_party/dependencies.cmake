@@ -1,0 +1,21 @@
+# Every third-party package in one place; third_party/README.md has version, licence and reason of each.
+find_package(Threads REQUIRED)
+find_package(TBB REQUIRED)
+find_package(Imath REQUIRED)
+find_package(OpenImageIO REQUIRED)
+find_package(OpenColorIO REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(fmt REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(TinyGLTF REQUIRED)
+
+# Embree 4 when there is one, else 3.13; scene/accel/embree.cpp serves both.
+find_package(embree 4 QUIET)
+if(NOT embree_FOUND)
+  find_package(embree 3.13 REQUIRED)
+endif()
+message(STATUS "Embree ${embree_VERSION}")
+
+if(VERNIER_TESTS)
+  find_package(GTest REQUIRED)
+endif()
