@@ -1,0 +1,38 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+// The `vernier` program is main.cpp and one file a subcommand. A subcommand is added by writing its file,
+// declaring its registration function here and listing it in main.cpp.
+
+namespace vernier::apps {
+
+/// What the process returns (README.md, "Exit codes").
+enum class ExitCode {
+  done = 0,
+  comparison_failed = 1,
+  usage = 2,
+  input = 3,   ///< a scene or file that cannot be read or written
+  memory = 4,  ///< out of memory
+  stopped = 5  ///< interrupted; the image so far is written
+};
+
+/// The program while its command line is read.
+struct Program {
+  CLI::App app;
+  std::string command_line;       ///< as typed, quoted where the shell needs it; goes into image headers
+  std::function<ExitCode()> run;  ///< set by the chosen subcommand's callback; may throw vernier::Error
+};
+
+// Each adds one subcommand to `program.app`, with a callback that sets `program.run`:
+//   auto* command = program.app.add_subcommand("info", "Say what a scene holds");
+//   auto options = std::make_shared<InfoOptions>();
+//   command->add_option("SCENE", options->scene, "glTF file (.gltf, .glb)");
+//   command->callback([&program, options] { program.run = [options] { return run_info(*options); }; });
+// A misuse found by the callback or by `run` is Error(usage).
+void register_render(Program& program);
+void register_info(Program& program);
+
+}  // namespace vernier::apps

@@ -1,0 +1,47 @@
+#include "apps/messages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+
+namespace vernier::apps {
+
+std::string one_line(std::string_view text) {
+  std::string line(text);
+  for (char& c : line)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line;
+}
+
+void print_error(std::string_view text) { fmt::print(stderr, "error: {}\n", one_line(text)); }
+
+void print_notices(std::span<const Notice> notices) {
+  std::set<std::string> printed;
+  for (const Notice& notice : notices) {
+    const bool warning = notice.severity == Notice::Severity::warning;
+    const std::string line = fmt::format("{}: {}{}{}", warning ? "warning" : "note", notice.place,
+                                         notice.place.empty() ? "" : ": ", notice.text);
+    if (printed.insert(line).second) fmt::print(stderr, "{}\n", one_line(line));
+  }
+}
+
+std::string shell_quoted(std::span<const char* const> words) {
+  const std::string_view safe = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+  std::string line;
+  for (const std::string_view word : words) {
+    if (!line.empty()) line += ' ';
+    if (!word.empty() && word.find_first_not_of(safe) == std::string_view::npos) {
+      line += word;
+      continue;
+    }
+    line += '\'';
+    for (const char c : word) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    line += '\'';
+  }
+  return line;
+}
+
+}  // namespace vernier::apps

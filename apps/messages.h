@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/base/error.h"
+
+// What the program says on standard error: one line each, "error: ...", "warning: ..." or "note: ...".
+
+namespace vernier::apps {
+
+/// `text` with line breaks and other control characters turned into spaces, so that it stays one line.
+std::string one_line(std::string_view text);
+
+void print_error(std::string_view text);
+
+/// Each different notice once, in order.
+void print_notices(std::span<const Notice> notices);
+
+/// The words of a command line as a shell would read them back: quoted where that is needed.
+std::string shell_quoted(std::span<const char* const> words);
+
+}  // namespace vernier::apps
