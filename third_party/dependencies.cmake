@@ -3,6 +3,18 @@ find_package(Threads REQUIRED)
 find_package(TBB REQUIRED)
 find_package(Imath REQUIRED)
 find_package(OpenImageIO REQUIRED)
+# Debian's OpenImageIO names include folders of packages that it does not depend on; CMake refuses folders that are
+# not there.
+foreach(property INTERFACE_INCLUDE_DIRECTORIES INTERFACE_SYSTEM_INCLUDE_DIRECTORIES)
+  get_target_property(folders OpenImageIO::OpenImageIO ${property})
+  set(there)
+  foreach(folder IN LISTS folders)
+    if(EXISTS "${folder}")
+      list(APPEND there "${folder}")
+    endif()
+  endforeach()
+  set_target_properties(OpenImageIO::OpenImageIO PROPERTIES ${property} "${there}")
+endforeach()
 # Debian installs OpenColorIO's CMake files where CMake does not look and with a wrong prefix in them; its pkg-config
 # file is right.
 find_package(OpenColorIO 2.1 CONFIG QUIET)
