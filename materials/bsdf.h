@@ -1,0 +1,36 @@
+#pragma once
+
+#include <variant>
+
+#include "materials/conductor.h"
+#include "materials/dielectric.h"
+#include "materials/lambert.h"
+#include "materials/mixture.h"
+#include "materials/plastic.h"
+
+namespace vernier {
+
+/// All models. Made at each hit, by value, with textures already read; the contract is in materials/bsdf_sample.h.
+/// A new model is a header of its own and an entry here.
+class Bsdf : public std::variant<Lambert, Conductor, Plastic, Dielectric, Mixture> {
+ public:
+  using variant::variant;
+
+  BsdfEval eval(const Vec3f& wo, const Vec3f& wi) const {
+    return std::visit([&](const auto& model) { return model.eval(wo, wi); }, base());
+  }
+  std::optional<BsdfSample> sample(const Vec3f& wo, float u, const Vec2f& v) const {
+    return std::visit([&](const auto& model) { return model.sample(wo, u, v); }, base());
+  }
+  Rgb albedo(const Vec3f& wo) const {
+    return std::visit([&](const auto& model) { return model.albedo(wo); }, base());
+  }
+  SpecularRays specular(const Vec3f& wo) const {
+    return std::visit([&](const auto& model) { return model.specular(wo); }, base());
+  }
+
+ private:
+  const variant& base() const { return *this; }
+};
+
+}  // namespace vernier

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+
+#include "core/math/vec.h"
+
+// Contract of every BSDF. Directions are unit vectors in the local frame with n = +z, both pointing away from the
+// surface; wo is on the side of n (wo.z > 0). wi.z > 0 is reflection, wi.z < 0 transmission. pdf is per solid angle
+// of wi. Values are for radiance carried from wi to wo; a transmitted one therefore carries the factor 1/eta^2.
+//
+//   BsdfEval eval(wo, wi) const                                  both 0 for delta lobes
+//   std::optional<BsdfSample> sample(wo, u, v) const             empty: the sample carries nothing
+//   Rgb albedo(wo) const                                         estimate of the fraction of light scattered
+//   SpecularRays specular(wo) const                              what a Whitted ray tracer follows
+
+namespace vernier {
+
+struct BsdfEval {
+  Rgb f_cos{0, 0, 0};  ///< f |cos theta_i|
+  float pdf = 0;       ///< of sample() producing wi by its non-delta lobes
+};
+
+enum class Lobe { diffuse, glossy, delta };
+
+struct BsdfSample {
+  Vec3f wi;
+  Rgb weight;       ///< f |cos theta_i| / pdf
+  float pdf = 0;    ///< for a delta lobe: the probability of having chosen it
+  Lobe lobe = Lobe::diffuse;
+  float eta = 1;    ///< index of the side entered over that left; 1 when reflected or thin
+
+  bool is_delta() const { return lobe == Lobe::delta; }
+  bool transmitted() const { return wi.z < 0; }
+};
+
+/// The mirror and refraction directions of a surface, each with the fraction of light that goes that way when the
+/// lobe is taken for a perfectly sharp one; weight zero where there is none.
+struct SpecularRays {
+  Rgb reflected{0, 0, 0};
+  Rgb transmitted{0, 0, 0};
+  Vec3f refracted{0, 0, -1};  ///< direction of `transmitted`
+  float alpha = 0;            ///< width of the lobes taken for sharp
+};
+
+/// wo mirrored about the normal.
+inline Vec3f reflect(const Vec3f& wo) { return {-wo.x, -wo.y, wo.z}; }
+
+}  // namespace vernier

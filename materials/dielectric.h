@@ -1,0 +1,119 @@
+#pragma once
+
+#include "materials/bsdf_sample.h"
+#include "materials/fresnel.h"
+#include "materials/ggx.h"
+
+namespace vernier {
+
+/// Clear boundary, smooth or GGX-rough, with exact Fresnel reflectance (Walter et al. 2007, eqs. 20, 21). With `thin`
+/// the surface is a sheet of no thickness: what passes is not bent, and rough sheets blur it like the mirrored
+/// reflection lobe (glTF KHR_materials_transmission).
+struct Dielectric {
+  float eta = 1.5f;       ///< index of the far side over that of the side of wo
+  Ggx ggx;
+  Rgb tint{1, 1, 1};      ///< multiplies what is transmitted
+  Rgb reflect_scale{1, 1, 1};  ///< multiplies the Fresnel reflectance except at total internal reflection
+  bool thin = false;
+
+  BsdfEval eval(const Vec3f& wo, const Vec3f& wi) const {
+    if (ggx.is_smooth() || wo.z <= 0 || wi.z == 0) return {};
+    if (wi.z > 0) return eval_reflection(wo, wi);
+    if (thin) {
+      const Vec3f mirrored(wi.x, wi.y, -wi.z);
+      const Vec3f m = normalize(wo + mirrored);
+      const Split split = boundary(dot(wo, m));
+      const float visible = ggx.visible_pdf(wo, m) / (4 * dot(wo, m));
+      return {split.transmitted * (visible * ggx.g2(wo, mirrored) / ggx.g1(wo)), (1 - split.prob) * visible};
+    }
+    if (eta == 1) return {};
+    // Generalised half vector, turned to the side of wo.
+    Vec3f m = normalize(wo + eta * wi);
+    if (m.z < 0) m = -m;
+    const float cos_om = dot(wo, m), cos_im = dot(wi, m);
+    if (cos_om <= 0 || cos_im >= 0) return {};
+    const Split split = boundary(cos_om);
+    const float jacobian = eta * eta * -cos_im / square(cos_om + eta * cos_im);
+    const float visible = ggx.visible_pdf(wo, m) * jacobian;
+    // f cos / pdf of the lobe is G2/G1 / eta^2: radiance is compressed by the squared index.
+    const float shadowing = (1 + ggx.lambda(wo)) / (1 + ggx.lambda(wo) + ggx.lambda(-wi));
+    return {split.transmitted * (visible * shadowing / (eta * eta)), (1 - split.prob) * visible};
+  }
+
+  std::optional<BsdfSample> sample(const Vec3f& wo, float u, const Vec2f& v) const {
+    if (wo.z <= 0) return std::nullopt;
+    const bool smooth = ggx.is_smooth() || (eta == 1 && !thin);
+    const Vec3f m = smooth ? Vec3f(0, 0, 1) : ggx.sample_visible(wo, v);
+    const float cos_om = dot(wo, m);
+    const Split split = boundary(cos_om);
+    const bool reflects = u < split.prob;
+    Vec3f wi;
+    if (reflects || thin) {
+      wi = 2 * cos_om * m - wo;
+      if (wi.z <= 0) return std::nullopt;
+      if (!reflects) wi = smooth ? -wo : Vec3f(wi.x, wi.y, -wi.z);
+    } else {
+      wi = refract(wo, m, cos_om, split.cos_t);
+      if (wi.z >= 0) return std::nullopt;
+    }
+    const float bent = reflects || thin ? 1 : eta;
+    if (smooth) {
+      const float prob = reflects ? split.prob : 1 - split.prob;
+      const Rgb weight = reflects ? split.reflected : split.transmitted / (bent * bent);
+      return BsdfSample{wi, weight / prob, prob, Lobe::delta, bent};
+    }
+    const BsdfEval value = eval(wo, wi);
+    if (!(value.pdf > 0)) return std::nullopt;
+    return BsdfSample{wi, value.f_cos / value.pdf, value.pdf, Lobe::glossy, bent};
+  }
+
+  Rgb albedo(const Vec3f& wo) const {
+    const Split split = boundary(wo.z);
+    return split.reflected + split.transmitted;
+  }
+
+  SpecularRays specular(const Vec3f& wo) const {
+    const Split split = boundary(wo.z);
+    const float bent = thin ? 1 : eta;
+    const Vec3f through = thin ? -wo : refract(wo, {0, 0, 1}, wo.z, split.cos_t);
+    return {split.reflected, split.transmitted / (bent * bent), through, std::sqrt(ggx.ax * ggx.ay)};
+  }
+
+ private:
+  struct Split {
+    Rgb reflected, transmitted;
+    float prob;   ///< of choosing reflection
+    float cos_t;  ///< of the refracted direction
+  };
+
+  Split boundary(float cos_om) const {
+    Split split;
+    const float fresnel = fresnel_dielectric(cos_om, eta, split.cos_t);
+    if (fresnel >= 1 && !thin) {
+      split.reflected = Rgb(1, 1, 1);
+      split.transmitted = Rgb(0, 0, 0);
+      split.prob = 1;
+      return split;
+    }
+    split.reflected = reflect_scale * fresnel;
+    split.transmitted = tint * (Rgb(1, 1, 1) - split.reflected);
+    const float r = max_component(split.reflected), t = max_component(split.transmitted);
+    split.prob = r + t > 0 ? r / (r + t) : 1;
+    return split;
+  }
+
+  Vec3f refract(const Vec3f& wo, const Vec3f& m, float cos_om, float cos_t) const {
+    return (cos_om / eta - cos_t) * m - wo / eta;
+  }
+
+  BsdfEval eval_reflection(const Vec3f& wo, const Vec3f& wi) const {
+    const Vec3f m = normalize(wo + wi);
+    const float cos_om = dot(wo, m);
+    if (cos_om <= 0) return {};
+    const Split split = boundary(cos_om);
+    const float visible = ggx.visible_pdf(wo, m) / (4 * cos_om);
+    return {split.reflected * (visible * ggx.g2(wo, wi) / ggx.g1(wo)), split.prob * visible};
+  }
+};
+
+}  // namespace vernier
