@@ -13,30 +13,36 @@ namespace vernier {
 /// Text and numbers stored in an image file's header, by attribute name.
 using Metadata = std::map<std::string, std::string>;
 
-/// Caps that an image header must satisfy before anything is decoded, so that a small hostile file cannot ask for
-/// gigabytes.
+/// Caps that an image header must satisfy before anything is decoded. A picture of more than 2^24 pixels
+/// whose file has under a 4096th as many bytes as values is refused too, so that a small hostile file cannot
+/// ask for gigabytes.
 struct ImageLimits {
   int64_t max_pixels = int64_t{1} << 28;
 };
 
-/// Reads any file OpenImageIO knows as float RGB (grey is repeated, alpha dropped), values as stored: HDR and EXR
-/// files are linear already. Throws Error(input) naming the file.
+/// Reads any file OpenImageIO knows as float RGB, values as stored: HDR and EXR files are linear already,
+/// eight- and sixteen-bit ones are divided by their largest value and keep their transfer function. Channels
+/// named R, G, B where there are such, else the first three, else grey repeated; alpha is dropped. Outside
+/// OpenEXR's data window the picture is black. Throws Error(input) naming the file.
 Image read_image(const std::string& path, const ImageLimits& limits = {});
 
-/// Decodes a PNG, JPEG, WebP, ... held in memory to 8 bits a channel, in the file's own encoding, 1 to 4 channels,
-/// unassociated alpha. `name` is what errors call it.
+/// Decodes a PNG, JPEG or WebP held in memory to 8 bits a channel, in the file's own encoding, 1 to 4
+/// channels, unassociated alpha; sixteen bits are rounded to eight. `name` is what errors call it. A
+/// truncated file is an error.
 Image8 decode_image8(std::span<const uint8_t> bytes, const std::string& name, const ImageLimits& limits = {});
 
-/// Writes float channels as OpenEXR with ZIP compression. `channel_names` has image.channels entries ("R", "G", "B",
-/// "albedo.R", ...). Written to a temporary file beside `path` and renamed; throws Error(output) and leaves nothing.
+/// Writes float channels as OpenEXR with ZIP compression. `channel_names` has image.channels entries ("R",
+/// "G", "B", "albedo.R", ...). Written to a temporary file beside `path` and renamed, so that `path` is never
+/// half-written; throws Error(output) and leaves nothing.
 void write_exr(const std::string& path, const Image& image, const std::vector<std::string>& channel_names,
                const Metadata& metadata);
 
 /// Writes display-encoded 8-bit values as PNG or JPEG by the extension of `path`, atomically like write_exr.
+/// PNG keeps each metadata entry as a text chunk, JPEG all of them as lines of its ImageDescription.
 void write_image8(const std::string& path, const Image8& image, const Metadata& metadata);
 
-/// Throws Error(output) unless a file of this extension can be written in that folder; called before rendering so that
-/// hours are not lost to a misspelt folder.
+/// Throws Error(output) unless a .exr, .png, .jpg or .jpeg file can be written in that folder; called before
+/// rendering so that hours are not lost to a misspelt folder.
 void check_writable_image(const std::string& path);
 
 }  // namespace vernier

@@ -1,0 +1,99 @@
+#include "core/image/image_header.h"
+
+#include <algorithm>
+#include <string_view>
+
+namespace vernier {
+namespace {
+
+using Bytes = std::span<const uint8_t>;
+
+bool has_text(Bytes bytes, size_t at, std::string_view text) {
+  return bytes.size() >= at + text.size() && std::equal(text.begin(), text.end(), bytes.begin() + at,
+                                                        [](char a, uint8_t b) { return uint8_t(a) == b; });
+}
+
+int64_t big_endian(Bytes bytes, size_t at, size_t count) {
+  int64_t value = 0;
+  for (size_t i = 0; i < count; ++i) value = value << 8 | bytes[at + i];
+  return value;
+}
+
+int64_t little_endian(Bytes bytes, size_t at, size_t count) {
+  int64_t value = 0;
+  for (size_t i = count; i-- > 0;) value = value << 8 | bytes[at + i];
+  return value;
+}
+
+// PNG (ISO/IEC 15948): signature, then chunks of length, type, data, checksum; IHDR first, IEND last.
+ImageHeader parse_png(Bytes bytes) {
+  ImageHeader header{"png"};
+  if (bytes.size() >= 24 && has_text(bytes, 12, "IHDR")) {
+    header.width = big_endian(bytes, 16, 4);
+    header.height = big_endian(bytes, 20, 4);
+  }
+  for (size_t at = 8; at + 12 <= bytes.size(); at += 12 + size_t(big_endian(bytes, at, 4)))
+    if (has_text(bytes, at + 4, "IEND")) header.complete = true;
+  return header;
+}
+
+bool is_start_of_frame(uint8_t marker) {
+  return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+}
+
+// JPEG (ITU-T T.81, annex B): marker segments with lengths; after a scan's header (SOS) entropy-coded data
+// runs to the next marker that is neither a stuffed zero nor a restart. An embedded thumbnail lies inside a
+// segment and is skipped.
+ImageHeader parse_jpeg(Bytes bytes) {
+  ImageHeader header{"jpeg"};
+  size_t at = 2;
+  while (at + 2 <= bytes.size()) {
+    const uint8_t marker = bytes[at + 1];
+    const bool in_scan = bytes[at] != 0xff || marker == 0 || (marker >= 0xd0 && marker <= 0xd7);
+    if (in_scan || marker == 0xff) {
+      ++at;
+      continue;
+    }
+    if (marker == 0xd9) {
+      header.complete = true;
+      break;
+    }
+    if (at + 4 > bytes.size()) break;
+    if (is_start_of_frame(marker) && at + 9 <= bytes.size()) {
+      header.height = big_endian(bytes, at + 5, 2);
+      header.width = big_endian(bytes, at + 7, 2);
+    }
+    at += 2 + size_t(std::max<int64_t>(2, big_endian(bytes, at + 2, 2)));
+  }
+  return header;
+}
+
+// WebP (RFC 9649): a RIFF container whose first chunk is VP8 (lossy), VP8L (lossless) or VP8X (extended).
+ImageHeader parse_webp(Bytes bytes) {
+  ImageHeader header{"webp"};
+  header.complete = int64_t(bytes.size()) >= little_endian(bytes, 4, 4) + 8;
+  if (bytes.size() < 30) return header;
+  if (has_text(bytes, 12, "VP8 ")) {
+    header.width = little_endian(bytes, 26, 2) & 0x3fff;
+    header.height = little_endian(bytes, 28, 2) & 0x3fff;
+  } else if (has_text(bytes, 12, "VP8L")) {
+    const int64_t packed = little_endian(bytes, 21, 4);
+    header.width = (packed & 0x3fff) + 1;
+    header.height = (packed >> 14 & 0x3fff) + 1;
+  } else if (has_text(bytes, 12, "VP8X")) {
+    header.width = little_endian(bytes, 24, 3) + 1;
+    header.height = little_endian(bytes, 27, 3) + 1;
+  }
+  return header;
+}
+
+}  // namespace
+
+std::optional<ImageHeader> parse_image_header(std::span<const uint8_t> bytes) {
+  if (has_text(bytes, 0, "\x89PNG\r\n\x1a\n")) return parse_png(bytes);
+  if (has_text(bytes, 0, "\xff\xd8\xff")) return parse_jpeg(bytes);
+  if (has_text(bytes, 0, "RIFF") && has_text(bytes, 8, "WEBP")) return parse_webp(bytes);
+  return std::nullopt;
+}
+
+}  // namespace vernier

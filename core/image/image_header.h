@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace vernier {
+
+/// What the first bytes of a PNG, JPEG or WebP file say, read without decoding, so that a file is refused
+/// before any library allocates for it.
+struct ImageHeader {
+  const char* format = "";        ///< OpenImageIO's name of the format
+  int64_t width = 0, height = 0;  ///< zero when the header ends before it gives them
+  bool complete = false;          ///< the file reaches its format's own end mark
+};
+
+/// Empty when the bytes begin with none of the three signatures.
+std::optional<ImageHeader> parse_image_header(std::span<const uint8_t> bytes);
+
+}  // namespace vernier

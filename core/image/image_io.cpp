@@ -1,0 +1,177 @@
+#include "core/image/image_io.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "core/base/error.h"
+#include "core/image/image_header.h"
+
+namespace vernier {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int max_channels = 1024;
+
+Error input_error(const std::string& file, const std::string& problem) {
+  return Error(ErrorKind::input, file, {}, problem);
+}
+
+// Refuses a size that is empty, above the caps, or out of all proportion to the file: no format here packs
+// more than some 1,500 values a byte (deflate 1,032; JPEG a bit per block), so a large picture in a tiny file
+// is hostile.
+void check_size(const std::string& name, int64_t width, int64_t height, int channels, uint64_t file_bytes,
+                const ImageLimits& limits) {
+  constexpr int64_t always_fine = int64_t{1} << 24;
+  constexpr int64_t max_values_per_byte = 4096;
+  const std::string size = std::to_string(width) + "x" + std::to_string(height);
+  if (width <= 0 || height <= 0) throw input_error(name, "image of size " + size + " has no pixels");
+  if (height > limits.max_pixels / width)
+    throw input_error(name, "image of " + size + " pixels is larger than the limit of " +
+                                std::to_string(limits.max_pixels) + " pixels; scale it down");
+  if (channels < 1 || channels > max_channels)
+    throw input_error(name, "image with " + std::to_string(channels) +
+                                " channels cannot be used; expected 1 to " + std::to_string(max_channels));
+  if (width * height > always_fine && uint64_t(width * height * channels / max_values_per_byte) > file_bytes)
+    throw input_error(name, "image header claims " + size + " pixels but the file has only " +
+                                std::to_string(file_bytes) + " bytes; it is damaged or hostile");
+}
+
+// One line, without OpenImageIO's trailing newlines.
+std::string one_line(std::string text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == '.')) text.pop_back();
+  for (char& c : text)
+    if (c == '\n') c = ' ';
+  return text.empty() ? "unknown error" : text;
+}
+
+OIIO::ImageSpec read_config() {
+  OIIO::ImageSpec config;
+  config.attribute("oiio:UnassociatedAlpha", 1);
+  return config;
+}
+
+struct OpenedImage {
+  std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;  // outlives `input`, which reads from it
+  OIIO::ImageInput::unique_ptr input;
+};
+
+OpenedImage open_memory(std::span<const uint8_t> bytes, const ImageHeader& header, const std::string& name,
+                        const ImageLimits& limits) {
+  check_size(name, header.width, header.height, 1, bytes.size(), limits);
+  if (!header.complete)
+    throw input_error(name, std::string(header.format) + " image is truncated after " +
+                                std::to_string(bytes.size()) + " bytes; get a whole copy of the file");
+  OpenedImage opened;
+  opened.memory = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size());
+  opened.input = OIIO::ImageInput::create(header.format, false, nullptr, opened.memory.get());
+  if (!opened.input)
+    throw input_error(name, std::string("this OpenImageIO cannot read ") + header.format +
+                                " images: " + one_line(OIIO::geterror()));
+  OIIO::ImageSpec spec;
+  // The name's extension must be the format's: some readers check it.
+  if (!opened.input->open(std::string("memory.") + header.format, spec, read_config()))
+    throw input_error(name, std::string("cannot decode ") + header.format +
+                                " image: " + one_line(opened.input->geterror()));
+  return opened;
+}
+
+OpenedImage open_file(const std::string& path, const ImageLimits& limits) {
+  OpenedImage opened;
+  const OIIO::ImageSpec config = read_config();
+  opened.input = OIIO::ImageInput::open(path, &config);
+  if (!opened.input) throw input_error(path, "cannot read as an image: " + one_line(OIIO::geterror()));
+  const OIIO::ImageSpec& spec = opened.input->spec();
+  if (spec.depth > 1 || spec.deep)
+    throw input_error(path, "volume and deep images cannot be used; expected a flat one");
+  check_size(path, spec.width, spec.height, spec.nchannels, fs::file_size(path), limits);
+  check_size(path, spec.full_width, spec.full_height, spec.nchannels, fs::file_size(path), limits);
+  return opened;
+}
+
+template <typename T>
+BasicImage<T> read_all_channels(OIIO::ImageInput& input, const std::string& name) {
+  const OIIO::ImageSpec spec = input.spec();
+  BasicImage<T> image(spec.width, spec.height, spec.nchannels);
+  input.threads(1);  // callers decode many images at once
+  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::BaseTypeFromC<T>::value, image.values.data()))
+    throw input_error(name, "cannot decode image, it is damaged: " + one_line(input.geterror()));
+  return image;
+}
+
+std::vector<uint8_t> read_bytes(const std::string& path, size_t at_most = SIZE_MAX) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) throw input_error(path, "is a folder; expected an image file");
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw input_error(path, std::string("cannot open image: ") + std::strerror(errno));
+  std::vector<uint8_t> bytes(std::min<uint64_t>(at_most, fs::file_size(path, ignored)));
+  stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
+  bytes.resize(size_t(stream.gcount()));
+  return bytes;
+}
+
+// Indices of red, green and blue: by name where the file has them, else the first three, else grey three
+// times.
+std::array<int, 3> rgb_channels(const OIIO::ImageSpec& spec) {
+  const std::array<int, 3> named{spec.channelindex("R"), spec.channelindex("G"), spec.channelindex("B")};
+  if (named[0] >= 0 && named[1] >= 0 && named[2] >= 0) return named;
+  if (spec.nchannels >= 3) return {0, 1, 2};
+  return {0, 0, 0};
+}
+
+// Where the stored pixels lie in the picture. OpenEXR's data window may cover only part of the picture, or
+// more than it; other formats' offsets are page positions and mean nothing here.
+struct Placement {
+  int width, height, left, top;
+};
+
+Placement placement(const OIIO::ImageInput& input) {
+  const OIIO::ImageSpec& spec = input.spec();
+  if (std::strcmp(input.format_name(), "openexr") != 0) return {spec.width, spec.height, 0, 0};
+  return {spec.full_width, spec.full_height, spec.x - spec.full_x, spec.y - spec.full_y};
+}
+
+template <size_t Count>
+Image place(const Image& stored, const Placement& where, const std::array<int, Count>& channels) {
+  Image picture(where.width, where.height, int(Count));
+  for (int y = std::max(0, where.top); y < std::min(where.height, where.top + stored.height); ++y)
+    for (int x = std::max(0, where.left); x < std::min(where.width, where.left + stored.width); ++x)
+      for (size_t c = 0; c < Count; ++c)
+        picture.pixel(x, y)[c] = stored.pixel(x - where.left, y - where.top)[channels[c]];
+  return picture;
+}
+
+}  // namespace
+
+Image read_image(const std::string& path, const ImageLimits& limits) {
+  std::vector<uint8_t> bytes = read_bytes(path, 32);
+  OpenedImage opened;
+  if (parse_image_header(bytes)) {
+    bytes = read_bytes(path);
+    opened = open_memory(bytes, *parse_image_header(bytes), path, limits);
+  } else {
+    opened = open_file(path, limits);
+  }
+  const Image stored = read_all_channels<float>(*opened.input, path);
+  return place(stored, placement(*opened.input), rgb_channels(opened.input->spec()));
+}
+
+Image8 decode_image8(std::span<const uint8_t> bytes, const std::string& name, const ImageLimits& limits) {
+  const auto header = parse_image_header(bytes);
+  if (!header)
+    throw input_error(name, bytes.empty() ? "image has no bytes"
+                                          : "not a PNG, JPEG or WebP image; convert it to one of these");
+  const OpenedImage opened = open_memory(bytes, *header, name, limits);
+  Image8 image = read_all_channels<uint8_t>(*opened.input, name);
+  if (image.channels > 4)
+    throw input_error(name, "image has " + std::to_string(image.channels) + " channels; expected 1 to 4");
+  return image;
+}
+
+}  // namespace vernier

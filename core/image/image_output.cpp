@@ -1,0 +1,142 @@
+#include <OpenImageIO/imageio.h>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "core/base/error.h"
+#include "core/image/image_io.h"
+
+namespace vernier {
+namespace {
+
+namespace fs = std::filesystem;
+
+Error output_error(const std::string& file, const std::string& problem) {
+  return Error(ErrorKind::output, file, {}, problem);
+}
+
+// A new empty file in the folder of `path`, removed at the end unless it was given its final name. A process
+// that is killed leaves at most this file, never a partial one called `path`.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::string& path) : final_(fs::path(path)) {
+    std::error_code error;
+    // Through a symbolic link the file it points to is replaced, not the link.
+    if (fs::is_symlink(final_, error)) final_ = fs::weakly_canonical(final_, error);
+    static std::atomic<unsigned> counter{0};
+    int descriptor = -1;
+    do {
+      const std::string name =
+          ".vernier-" + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".tmp";
+      temporary_ = final_.parent_path() / name;
+      descriptor = ::open(temporary_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+    } while (descriptor < 0 && errno == EEXIST);
+    if (descriptor < 0) throw output_error(path, std::string("cannot write image: ") + std::strerror(errno));
+    ::close(descriptor);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  }
+
+  std::string path() const { return temporary_.string(); }
+
+  void give_final_name() {
+    if (::rename(temporary_.c_str(), final_.c_str()) != 0)
+      throw output_error(final_.string(), std::string("cannot replace file: ") + std::strerror(errno));
+    temporary_.clear();
+  }
+
+ private:
+  fs::path final_, temporary_;
+};
+
+void write_atomically(const std::string& path, const char* format, const OIIO::ImageSpec& spec,
+                      const void* pixels) {
+  TemporaryFile file(path);
+  const auto output = OIIO::ImageOutput::create(format);
+  if (!output)
+    throw output_error(path,
+                       std::string("this OpenImageIO cannot write ") + format + ": " + OIIO::geterror());
+  if (!output->open(file.path(), spec) || !output->write_image(spec.format, pixels) || !output->close())
+    throw output_error(path, "cannot write image: " + output->geterror());
+  file.give_final_name();
+}
+
+// OpenImageIO's name of the format that a path's extension asks for; null when it is none of ours.
+const char* format_of(const std::string& path) {
+  std::string extension = fs::path(path).extension().string();
+  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  if (extension == ".exr") return "openexr";
+  if (extension == ".png") return "png";
+  if (extension == ".jpg" || extension == ".jpeg") return "jpeg";
+  return nullptr;
+}
+
+void set_metadata(OIIO::ImageSpec& spec, const Metadata& metadata, bool as_lines) {
+  std::string lines;
+  for (const auto& [name, value] : metadata) {
+    spec.attribute(name, value);
+    lines += name + ": " + value + "\n";
+  }
+  if (as_lines && !lines.empty()) spec.attribute("ImageDescription", lines);
+}
+
+}  // namespace
+
+void write_exr(const std::string& path, const Image& image, const std::vector<std::string>& channel_names,
+               const Metadata& metadata) {
+  if (image.empty() || channel_names.size() != size_t(image.channels))
+    throw output_error(path, "image has " + std::to_string(image.channels) + " channels and " +
+                                 std::to_string(channel_names.size()) + " channel names");
+  OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeFloat);
+  spec.channelnames = channel_names;
+  spec.alpha_channel = spec.channelindex("A");
+  spec.attribute("compression", "zip");
+  // Red, green, blue and white of Rec.709 (ITU-R BT.709-6, 1.3 and 1.4).
+  const float chromaticities[8] = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
+  spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities);
+  set_metadata(spec, metadata, false);
+  write_atomically(path, "openexr", spec, image.values.data());
+}
+
+void write_image8(const std::string& path, const Image8& image, const Metadata& metadata) {
+  const char* format = format_of(path);
+  if (!format || std::strcmp(format, "openexr") == 0)
+    throw output_error(path, "cannot write 8-bit values to this kind of file; use .png or .jpg");
+  if (image.empty()) throw output_error(path, "image has no pixels");
+  OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeUInt8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  const bool jpeg = std::strcmp(format, "jpeg") == 0;
+  if (jpeg) {
+    spec.attribute("compression", "jpeg:95");
+    spec.attribute("jpeg:subsampling", "4:4:4");
+  }
+  set_metadata(spec, metadata, jpeg);
+  write_atomically(path, format, spec, image.values.data());
+}
+
+void check_writable_image(const std::string& path) {
+  if (!format_of(path))
+    throw output_error(path, "cannot write this kind of image; end the name in .exr, .png or .jpg");
+  std::error_code error;
+  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+  const std::string quoted = "'" + folder.string() + "'";
+  if (!fs::exists(folder, error))
+    throw output_error(path, "folder " + quoted + " does not exist; create it first");
+  if (!fs::is_directory(folder, error)) throw output_error(path, quoted + " is not a folder");
+  if (fs::is_directory(path, error)) throw output_error(path, "is a folder; name a file in it");
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    throw output_error(path, "cannot write in folder " + quoted + ": " + std::strerror(errno));
+  if (fs::exists(path, error) && ::access(path.c_str(), W_OK) != 0)
+    throw output_error(path, std::string("cannot replace the file: ") + std::strerror(errno));
+}
+
+}  // namespace vernier
