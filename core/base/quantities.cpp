@@ -1,0 +1,130 @@
+#include "core/base/quantities.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "core/base/error.h"
+
+namespace vernier {
+namespace {
+
+constexpr int max_side = 65536;
+
+/// Takes a number off the front of `text`; empty when there is none or it does not fit.
+template <typename T>
+std::optional<T> take_number(std::string_view& text) {
+  T value{};
+  // std::from_chars would read "-1", "inf" and "nan"
+  if (text.empty() || !((text[0] >= '0' && text[0] <= '9') || text[0] == '.')) return {};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{}) return {};
+  text.remove_prefix(static_cast<size_t>(end - text.data()));
+  return value;
+}
+
+bool take(std::string_view& text, char expected) {
+  if (text.empty() || text[0] != expected) return false;
+  text.remove_prefix(1);
+  return true;
+}
+
+std::optional<PixelSize> take_size(std::string_view& text) {
+  const auto width = take_number<int>(text);
+  if (!width || !take(text, 'x')) return {};
+  const auto height = take_number<int>(text);
+  if (!height || *width < 1 || *height < 1 || *width > max_side || *height > max_side) return {};
+  return PixelSize{*width, *height};
+}
+
+double unit_seconds(char unit) {
+  switch (unit) {
+    case 's':
+      return 1;
+    case 'm':
+      return 60;
+    case 'h':
+      return 3600;
+    default:
+      return 0;
+  }
+}
+
+[[noreturn]] void refuse(std::string_view text, std::string_view expected) {
+  throw Error(ErrorKind::usage, fmt::format("'{}' is not {}", text, expected));
+}
+
+std::string with_prefix(double value, std::string_view unit) {
+  constexpr std::array<std::string_view, 6> prefixes{"", "k", "M", "G", "T", "P"};
+  size_t prefix = 0;
+  while (std::abs(value) >= 999.5 && prefix + 1 < prefixes.size()) {
+    value /= 1000;
+    ++prefix;
+  }
+  const int decimals = prefix == 0 || value >= 99.95 ? 0 : value >= 9.995 ? 1 : 2;
+  return fmt::format("{:.{}f} {}{}", value, decimals, prefixes[prefix], unit);
+}
+
+}  // namespace
+
+double parse_seconds(std::string_view text) {
+  constexpr std::string_view expected =
+      "a duration greater than zero such as 90s, 10m, 1.5h, 1h30m or 45 (seconds)";
+  std::string_view rest = text;
+  double total = 0;
+  while (!rest.empty()) {
+    const bool first = rest.size() == text.size();
+    const auto number = take_number<double>(rest);
+    if (!number) refuse(text, expected);
+    const bool bare = first && rest.empty();
+    const double scale = bare ? 1 : rest.empty() ? 0 : unit_seconds(rest[0]);
+    if (scale == 0) refuse(text, expected);
+    if (!bare) rest.remove_prefix(1);
+    total += *number * scale;
+  }
+  if (!(total > 0) || !std::isfinite(total)) refuse(text, expected);
+  return total;
+}
+
+PixelSize parse_pixel_size(std::string_view text) {
+  std::string_view rest = text;
+  const auto size = take_size(rest);
+  if (!size || !rest.empty())
+    refuse(text,
+           fmt::format("a size of the form WIDTHxHEIGHT, each from 1 to {}, such as 1280x720", max_side));
+  return *size;
+}
+
+PixelRect parse_pixel_rect(std::string_view text) {
+  constexpr std::string_view expected =
+      "a part of the picture of the form WIDTHxHEIGHT+X+Y in whole pixels, such as 640x360+10+20";
+  std::string_view rest = text;
+  const auto size = take_size(rest);
+  if (!size || !take(rest, '+')) refuse(text, expected);
+  const auto x = take_number<int>(rest);
+  if (!x || !take(rest, '+')) refuse(text, expected);
+  const auto y = take_number<int>(rest);
+  if (!y || !rest.empty()) refuse(text, expected);
+  return {*x, *y, size->width, size->height};
+}
+
+std::string format_seconds(double seconds) {
+  if (seconds < 0.9995) return fmt::format("{:.0f} ms", seconds * 1000);
+  if (seconds < 59.95) return fmt::format("{:.1f} s", seconds);
+  const long long whole = std::llround(seconds);
+  if (whole < 3600) return fmt::format("{} m {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} m", whole / 3600, whole % 3600 / 60);
+}
+
+std::string format_count(double count) {
+  std::string text = with_prefix(count, "");
+  if (text.back() == ' ') text.pop_back();
+  return text;
+}
+
+std::string format_bytes(double bytes) { return with_prefix(bytes, "B"); }
+
+}  // namespace vernier

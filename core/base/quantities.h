@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+// Quantities as people type them. Each parser takes the whole text or throws Error(usage) that says what it
+// expected.
+
+namespace vernier {
+
+struct PixelSize {
+  int width = 0, height = 0;
+};
+
+/// Pixels [x, x + width) x [y, y + height).
+struct PixelRect {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// Seconds, greater than zero, from "90s", "10m", "1.5h", "1h30m", or a bare number of seconds.
+double parse_seconds(std::string_view text);
+
+/// "1280x720"; both at least 1 and at most 65536.
+PixelSize parse_pixel_size(std::string_view text);
+
+/// "640x360+10+20": width, height, then the column and row of the upper left pixel, from 0.
+PixelRect parse_pixel_rect(std::string_view text);
+
+/// "450 ms", "12.3 s", "4 m 05 s", "2 h 03 m".
+std::string format_seconds(double seconds);
+
+/// "950", "12.3 k", "4.56 M", "1.20 G": three digits, with the decimal prefix.
+std::string format_count(double count);
+
+/// "950 B", "12.3 kB", "4.56 MB": decimal units.
+std::string format_bytes(double bytes);
+
+}  // namespace vernier
