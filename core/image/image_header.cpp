@@ -1,6 +1,7 @@
 #include "core/image/image_header.h"
 
 #include <algorithm>
+#include <boost/crc.hpp>
 #include <string_view>
 
 namespace vernier {
@@ -26,14 +27,23 @@ int64_t little_endian(Bytes bytes, size_t at, size_t count) {
 }
 
 // PNG (ISO/IEC 15948): signature, then chunks of length, type, data, checksum; IHDR first, IEND last.
+// Checksums are tested here because libpng writes its complaints to standard error.
 ImageHeader parse_png(Bytes bytes) {
   ImageHeader header{"png"};
   if (bytes.size() >= 24 && has_text(bytes, 12, "IHDR")) {
     header.width = big_endian(bytes, 16, 4);
     header.height = big_endian(bytes, 20, 4);
   }
-  for (size_t at = 8; at + 12 <= bytes.size(); at += 12 + size_t(big_endian(bytes, at, 4)))
-    if (has_text(bytes, at + 4, "IEND")) header.complete = true;
+  size_t at = 8;
+  while (!header.intact && at + 12 <= bytes.size()) {
+    const size_t length = size_t(big_endian(bytes, at, 4));
+    if (length > bytes.size() - at - 12) break;
+    boost::crc_32_type checksum;
+    checksum.process_bytes(&bytes[at + 4], length + 4);
+    if (checksum.checksum() != big_endian(bytes, at + 8 + length, 4)) break;
+    header.intact = has_text(bytes, at + 4, "IEND");
+    at += 12 + length;
+  }
   return header;
 }
 
@@ -55,7 +65,7 @@ ImageHeader parse_jpeg(Bytes bytes) {
       continue;
     }
     if (marker == 0xd9) {
-      header.complete = true;
+      header.intact = true;
       break;
     }
     if (at + 4 > bytes.size()) break;
@@ -71,7 +81,7 @@ ImageHeader parse_jpeg(Bytes bytes) {
 // WebP (RFC 9649): a RIFF container whose first chunk is VP8 (lossy), VP8L (lossless) or VP8X (extended).
 ImageHeader parse_webp(Bytes bytes) {
   ImageHeader header{"webp"};
-  header.complete = int64_t(bytes.size()) >= little_endian(bytes, 4, 4) + 8;
+  header.intact = int64_t(bytes.size()) >= little_endian(bytes, 4, 4) + 8;
   if (bytes.size() < 30) return header;
   if (has_text(bytes, 12, "VP8 ")) {
     header.width = little_endian(bytes, 26, 2) & 0x3fff;

@@ -11,7 +11,7 @@ namespace vernier {
 struct ImageHeader {
   const char* format = "";        ///< OpenImageIO's name of the format
   int64_t width = 0, height = 0;  ///< zero when the header ends before it gives them
-  bool complete = false;          ///< the file reaches its format's own end mark
+  bool intact = false;  ///< the file reaches its format's own end mark, and PNG's checksums are right
 };
 
 /// Empty when the bytes begin with none of the three signatures.

@@ -2,6 +2,7 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
 
 #include <array>
 #include <cerrno>
@@ -30,17 +31,20 @@ void check_size(const std::string& name, int64_t width, int64_t height, int chan
                 const ImageLimits& limits) {
   constexpr int64_t always_fine = int64_t{1} << 24;
   constexpr int64_t max_values_per_byte = 4096;
-  const std::string size = std::to_string(width) + "x" + std::to_string(height);
-  if (width <= 0 || height <= 0) throw input_error(name, "image of size " + size + " has no pixels");
+  if (width <= 0 || height <= 0)
+    throw input_error(name, fmt::format("image of size {}x{} has no pixels", width, height));
   if (height > limits.max_pixels / width)
-    throw input_error(name, "image of " + size + " pixels is larger than the limit of " +
-                                std::to_string(limits.max_pixels) + " pixels; scale it down");
+    throw input_error(
+        name, fmt::format("image of {}x{} pixels is larger than the limit of {} pixels; scale it down", width,
+                          height, limits.max_pixels));
   if (channels < 1 || channels > max_channels)
-    throw input_error(name, "image with " + std::to_string(channels) +
-                                " channels cannot be used; expected 1 to " + std::to_string(max_channels));
+    throw input_error(
+        name, fmt::format("image with {} channels cannot be used; expected 1 to {}", channels, max_channels));
   if (width * height > always_fine && uint64_t(width * height * channels / max_values_per_byte) > file_bytes)
-    throw input_error(name, "image header claims " + size + " pixels but the file has only " +
-                                std::to_string(file_bytes) + " bytes; it is damaged or hostile");
+    throw input_error(
+        name, fmt::format("image header claims {}x{} pixels but the file has only {} bytes; it is damaged "
+                          "or hostile",
+                          width, height, file_bytes));
 }
 
 // One line, without OpenImageIO's trailing newlines.
@@ -65,20 +69,22 @@ struct OpenedImage {
 OpenedImage open_memory(std::span<const uint8_t> bytes, const ImageHeader& header, const std::string& name,
                         const ImageLimits& limits) {
   check_size(name, header.width, header.height, 1, bytes.size(), limits);
-  if (!header.complete)
-    throw input_error(name, std::string(header.format) + " image is truncated after " +
-                                std::to_string(bytes.size()) + " bytes; get a whole copy of the file");
+  if (!header.intact)
+    throw input_error(name,
+                      fmt::format("{} image is truncated or damaged ({} bytes); get a whole copy of the file",
+                                  header.format, bytes.size()));
   OpenedImage opened;
   opened.memory = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size());
-  opened.input = OIIO::ImageInput::create(header.format, false, nullptr, opened.memory.get());
+  opened.input = OIIO::ImageInput::create(header.format);
   if (!opened.input)
-    throw input_error(name, std::string("this OpenImageIO cannot read ") + header.format +
-                                " images: " + one_line(OIIO::geterror()));
+    throw input_error(name, fmt::format("this OpenImageIO cannot read {} images: {}", header.format,
+                                        one_line(OIIO::geterror())));
+  opened.input->set_ioproxy(opened.memory.get());
   OIIO::ImageSpec spec;
   // The name's extension must be the format's: some readers check it.
-  if (!opened.input->open(std::string("memory.") + header.format, spec, read_config()))
-    throw input_error(name, std::string("cannot decode ") + header.format +
-                                " image: " + one_line(opened.input->geterror()));
+  if (!opened.input->open(fmt::format("memory.{}", header.format), spec, read_config()))
+    throw input_error(
+        name, fmt::format("cannot decode {} image: {}", header.format, one_line(opened.input->geterror())));
   return opened;
 }
 
@@ -109,7 +115,7 @@ std::vector<uint8_t> read_bytes(const std::string& path, size_t at_most = SIZE_M
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) throw input_error(path, "is a folder; expected an image file");
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw input_error(path, std::string("cannot open image: ") + std::strerror(errno));
+  if (!stream) throw input_error(path, fmt::format("cannot open image: {}", std::strerror(errno)));
   std::vector<uint8_t> bytes(std::min<uint64_t>(at_most, fs::file_size(path, ignored)));
   stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
   bytes.resize(size_t(stream.gcount()));
@@ -170,7 +176,7 @@ Image8 decode_image8(std::span<const uint8_t> bytes, const std::string& name, co
   const OpenedImage opened = open_memory(bytes, *header, name, limits);
   Image8 image = read_all_channels<uint8_t>(*opened.input, name);
   if (image.channels > 4)
-    throw input_error(name, "image has " + std::to_string(image.channels) + " channels; expected 1 to 4");
+    throw input_error(name, fmt::format("image has {} channels; expected 1 to 4", image.channels));
   return image;
 }
 

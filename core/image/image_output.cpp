@@ -1,10 +1,13 @@
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cctype>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 
@@ -36,7 +39,7 @@ class TemporaryFile {
       temporary_ = final_.parent_path() / name;
       descriptor = ::open(temporary_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
     } while (descriptor < 0 && errno == EEXIST);
-    if (descriptor < 0) throw output_error(path, std::string("cannot write image: ") + std::strerror(errno));
+    if (descriptor < 0) throw output_error(path, fmt::format("cannot write image: {}", std::strerror(errno)));
     ::close(descriptor);
   }
   TemporaryFile(const TemporaryFile&) = delete;
@@ -49,7 +52,7 @@ class TemporaryFile {
 
   void give_final_name() {
     if (::rename(temporary_.c_str(), final_.c_str()) != 0)
-      throw output_error(final_.string(), std::string("cannot replace file: ") + std::strerror(errno));
+      throw output_error(final_.string(), fmt::format("cannot replace file: {}", std::strerror(errno)));
     temporary_.clear();
   }
 
@@ -57,16 +60,25 @@ class TemporaryFile {
   fs::path final_, temporary_;
 };
 
-void write_atomically(const std::string& path, const char* format, const OIIO::ImageSpec& spec,
-                      const void* pixels) {
-  TemporaryFile file(path);
+void write_image(const std::string& path, const std::string& target, const char* format,
+                 const OIIO::ImageSpec& spec, const void* pixels, OIIO::Filesystem::IOProxy* proxy) {
   const auto output = OIIO::ImageOutput::create(format);
   if (!output)
+    throw output_error(path, fmt::format("this OpenImageIO cannot write {}: {}", format, OIIO::geterror()));
+  if (proxy) output->set_ioproxy(proxy);
+  if (!output->open(target, spec) || !output->write_image(spec.format, pixels) || !output->close())
+    throw output_error(path, fmt::format("cannot write image: {}", output->geterror()));
+}
+
+void write_bytes(const std::string& path, const std::string& target,
+                 const std::vector<unsigned char>& bytes) {
+  std::FILE* file = std::fopen(target.c_str(), "wb");
+  const bool written = file && std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  const int write_error = errno;
+  const bool closed = file && std::fclose(file) == 0;
+  if (!written || !closed)
     throw output_error(path,
-                       std::string("this OpenImageIO cannot write ") + format + ": " + OIIO::geterror());
-  if (!output->open(file.path(), spec) || !output->write_image(spec.format, pixels) || !output->close())
-    throw output_error(path, "cannot write image: " + output->geterror());
-  file.give_final_name();
+                       fmt::format("cannot write image: {}", std::strerror(written ? errno : write_error)));
 }
 
 // OpenImageIO's name of the format that a path's extension asks for; null when it is none of ours.
@@ -93,8 +105,8 @@ void set_metadata(OIIO::ImageSpec& spec, const Metadata& metadata, bool as_lines
 void write_exr(const std::string& path, const Image& image, const std::vector<std::string>& channel_names,
                const Metadata& metadata) {
   if (image.empty() || channel_names.size() != size_t(image.channels))
-    throw output_error(path, "image has " + std::to_string(image.channels) + " channels and " +
-                                 std::to_string(channel_names.size()) + " channel names");
+    throw output_error(path, fmt::format("image has {} channels and {} channel names", image.channels,
+                                         channel_names.size()));
   OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeFloat);
   spec.channelnames = channel_names;
   spec.alpha_channel = spec.channelindex("A");
@@ -103,7 +115,9 @@ void write_exr(const std::string& path, const Image& image, const std::vector<st
   const float chromaticities[8] = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
   spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities);
   set_metadata(spec, metadata, false);
-  write_atomically(path, "openexr", spec, image.values.data());
+  TemporaryFile file(path);
+  write_image(path, file.path(), "openexr", spec, image.values.data(), nullptr);
+  file.give_final_name();
 }
 
 void write_image8(const std::string& path, const Image8& image, const Metadata& metadata) {
@@ -120,7 +134,13 @@ void write_image8(const std::string& path, const Image8& image, const Metadata& 
     spec.attribute("jpeg:subsampling", "4:4:4");
   }
   set_metadata(spec, metadata, jpeg);
-  write_atomically(path, format, spec, image.values.data());
+  // Encoded in memory first: on a full disk libpng's writer says nothing and libjpeg's ends the process.
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  write_image(path, fmt::format("memory.{}", format), format, spec, image.values.data(), &memory);
+  TemporaryFile file(path);
+  write_bytes(path, file.path(), bytes);
+  file.give_final_name();
 }
 
 void check_writable_image(const std::string& path) {
@@ -128,15 +148,16 @@ void check_writable_image(const std::string& path) {
     throw output_error(path, "cannot write this kind of image; end the name in .exr, .png or .jpg");
   std::error_code error;
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
-  const std::string quoted = "'" + folder.string() + "'";
   if (!fs::exists(folder, error))
-    throw output_error(path, "folder " + quoted + " does not exist; create it first");
-  if (!fs::is_directory(folder, error)) throw output_error(path, quoted + " is not a folder");
+    throw output_error(path, fmt::format("folder '{}' does not exist; create it first", folder.string()));
+  if (!fs::is_directory(folder, error))
+    throw output_error(path, fmt::format("'{}' is not a folder", folder.string()));
   if (fs::is_directory(path, error)) throw output_error(path, "is a folder; name a file in it");
   if (::access(folder.c_str(), W_OK | X_OK) != 0)
-    throw output_error(path, "cannot write in folder " + quoted + ": " + std::strerror(errno));
+    throw output_error(path,
+                       fmt::format("cannot write in folder '{}': {}", folder.string(), std::strerror(errno)));
   if (fs::exists(path, error) && ::access(path.c_str(), W_OK) != 0)
-    throw output_error(path, std::string("cannot replace the file: ") + std::strerror(errno));
+    throw output_error(path, fmt::format("cannot replace the file: {}", std::strerror(errno)));
 }
 
 }  // namespace vernier
