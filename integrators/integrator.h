@@ -26,7 +26,8 @@ struct RayCounts {
   }
 };
 
-/// One sample's answer: radiance arriving along the camera ray, W m^-2 sr^-1 in linear Rec.709 (or what `--show` asks).
+/// One sample's answer: radiance arriving along the camera ray, W m^-2 sr^-1 in linear Rec.709 (or what
+/// `--show` asks).
 struct Estimate {
   Rgb radiance{0, 0, 0};
   RayCounts rays;
@@ -37,19 +38,21 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// `sampler` stands at block 1 (block 0 belongs to the camera).
+  /// Block 0 of `sampler` belongs to the camera; the others are free.
   virtual Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler) const = 0;
-
-  /// Whether a second sample of a pixel can differ from the first, apart from its place in the pixel.
-  virtual bool uses_random_numbers() const { return true; }
 };
+
+/// Which technique finds light: both weighted against each other, or one alone, for study and for tests.
+enum class LightSampling { mis, light, bsdf };
 
 /// What the command line can say of any integrator; each reads what it knows.
 struct IntegratorOptions {
-  int max_depth = 16;           ///< path vertices after the camera
-  std::string show = "normal";  ///< raycast: what to show
-  float ambient = 0;            ///< whitted: constant ambient radiance
-  float cutoff = 1e-3f;         ///< whitted: a recursive ray that would contribute less than this is not traced
+  int max_depth = 16;                                 ///< path vertices after the camera
+  LightSampling light_sampling = LightSampling::mis;  ///< path
+  bool russian_roulette = true;                       ///< path
+  std::string show = "normal";                        ///< raycast: what to show
+  float ambient = 0.05f;                              ///< whitted: constant ambient radiance
+  float cutoff = 1e-3f;  ///< whitted: a recursive ray that would contribute less than this is not traced
 };
 
 /// One line of the table of integrators.

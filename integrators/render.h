@@ -27,11 +27,11 @@ struct RenderOptions {
   uint64_t seed = 0;
 };
 
-/// State after some tiles; handed to the observer a few times a second at most, on the calling thread's behalf and
-/// never concurrently.
+/// State after some tiles; handed to the observer a few times a second at most, on the calling thread's
+/// behalf and never concurrently.
 struct RenderProgress {
   double seconds = 0;
-  double fraction = 0;   ///< of the samples or of the time asked for, whichever is further; in [0, 1]
+  double fraction = 0;  ///< of the samples or of the time asked for, whichever is further; in [0, 1]
   double samples_per_pixel = 0;
   uint64_t samples = 0;  ///< camera samples in total
   RayCounts rays;
@@ -46,17 +46,18 @@ struct BadSample {
 enum class StopReason { samples, time, interrupted };
 
 struct RenderResult {
-  Film film;                 ///< of the crop's size
+  Film film;  ///< of the crop's size
   StopReason reason = StopReason::samples;
   double seconds = 0;
   uint64_t samples = 0;
   RayCounts rays;
-  uint64_t bad_samples = 0;  ///< rejected by the film
+  uint64_t bad_samples = 0;                    ///< rejected by the film
   std::vector<BadSample> bad_sample_examples;  ///< at most a few
 };
 
-/// Renders tiles of the picture in passes on all threads. The same bytes for any number of threads. `stop` may become
-/// true at any time (from a signal handler): rendering then ends within about a tile, with what is there.
+/// Renders tiles of the picture in passes on all threads. The same bytes for any number of threads. `stop`
+/// may become true at any time (from a signal handler): rendering then ends within about a tile, with what is
+/// there.
 RenderResult render(const Scene& scene, const Camera& camera, const Integrator& integrator,
                     const RenderOptions& options, const std::atomic<bool>& stop,
                     const std::function<void(const RenderProgress&)>& observe = {});

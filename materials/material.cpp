@@ -17,7 +17,8 @@ Rgb rgb(const Vec4f& v) { return {v.x, v.y, v.z}; }
 Rgb absorption_of(const MaterialDescription& d) {
   Rgb sigma(0, 0, 0);
   if (!std::isfinite(d.attenuation_distance) || !(d.attenuation_distance > 0)) return sigma;
-  for (int c = 0; c < 3; ++c) sigma[c] = -std::log(std::max(d.attenuation_color[c], 1e-6f)) / d.attenuation_distance;
+  for (int c = 0; c < 3; ++c)
+    sigma[c] = -std::log(std::max(d.attenuation_color[c], 1e-6f)) / d.attenuation_distance;
   return sigma;
 }
 
@@ -26,8 +27,8 @@ Rgb absorption_of(const MaterialDescription& d) {
 Material::Material(const MaterialDescription& description, std::span<const Texture> textures, bool has_colors)
     : description_(description), textures_(textures), has_colors_(has_colors) {
   const auto& d = description_;
-  const bool bsdf_varies = has_colors || d.base_color_texture || d.metallic_roughness_texture || d.specular_texture ||
-                           d.specular_color_texture || d.transmission_texture;
+  const bool bsdf_varies = has_colors || d.base_color_texture || d.metallic_roughness_texture ||
+                           d.specular_texture || d.specular_color_texture || d.transmission_texture;
   is_constant_ = !bsdf_varies;
   needs_attributes_ = bsdf_varies || d.normal_texture || d.emissive_texture;
   is_emissive_ = d.unlit || !is_black(d.emissive);
@@ -38,13 +39,16 @@ Material::Material(const MaterialDescription& description, std::span<const Textu
   }
 }
 
-Vec4f Material::read(const TextureUse& use, const SurfaceAttributes& attributes, TexelEncoding encoding) const {
+Vec4f Material::read(const TextureUse& use, const SurfaceAttributes& attributes,
+                     TexelEncoding encoding) const {
   if (!use) return {1, 1, 1, 1};
-  return textures_[size_t(use.texture)].sample(transform_uv(use, attributes.uv[size_t(use.texcoord)]), encoding);
+  return textures_[size_t(use.texture)].sample(transform_uv(use, attributes.uv[size_t(use.texcoord)]),
+                                               encoding);
 }
 
 Vec4f Material::base_color(const SurfaceAttributes& attributes) const {
-  Vec4f color = description_.base_color * read(description_.base_color_texture, attributes, TexelEncoding::srgb);
+  Vec4f color =
+      description_.base_color * read(description_.base_color_texture, attributes, TexelEncoding::srgb);
   if (has_colors_) color *= attributes.color;
   return color;
 }
@@ -77,7 +81,8 @@ Bsdf Material::make_bsdf(const SurfaceAttributes& attributes, bool front) const 
   Rgb f0;
   for (int c = 0; c < 3; ++c)
     f0[c] = (d.ior == 0 ? 1 : std::min(f0_from_ior(d.ior) * specular_color[c], 1.f)) * f90;
-  const float transmission = d.transmission * read(d.transmission_texture, attributes, TexelEncoding::linear).x;
+  const float transmission =
+      d.transmission * read(d.transmission_texture, attributes, TexelEncoding::linear).x;
 
   if (transmission <= 0 && metallic <= 0 && f90 <= 0) return Lambert{color};
   const Plastic plastic{color, f0, {f90, f90, f90}, ggx};
@@ -87,8 +92,8 @@ Bsdf Material::make_bsdf(const SurfaceAttributes& attributes, bool front) const 
   const float ior = d.ior == 0 ? 1e6f : d.ior;
   const Dielectric glass{thin || front ? ior : 1 / ior, ggx, color, specular_color * f90, thin};
   if (transmission >= 1 && metallic <= 0) return glass;
-  return Mixture{metal,    plastic,  glass, metallic, (1 - metallic) * (1 - transmission),
-                 (1 - metallic) * transmission};
+  return Mixture{
+      metal, plastic, glass, metallic, (1 - metallic) * (1 - transmission), (1 - metallic) * transmission};
 }
 
 Rgb Material::emission(const SurfaceAttributes& attributes, bool front) const {

@@ -14,8 +14,9 @@ struct SurfaceAttributes {
   Vec4f color{1, 1, 1, 1};
 };
 
-/// A glTF material compiled to the least model that is exact for it, with its textures at hand. What it does not use
-/// is not read: ask needs_attributes() before interpolating them. Refers to the textures it was compiled with.
+/// A glTF material compiled to the least model that is exact for it, with its textures at hand. What it does
+/// not use is not read: ask needs_attributes() before interpolating them. Refers to the textures it was
+/// compiled with.
 class Material {
  public:
   /// `has_colors`: the mesh has vertex colours, which multiply the base colour.
@@ -24,7 +25,8 @@ class Material {
   /// The scattering at a point met from the front or the back; front faces look to the outside of a volume.
   Bsdf bsdf(const SurfaceAttributes& attributes, bool front) const;
 
-  /// Radiance emitted at a point on the side given; glTF emits from back faces of double-sided materials only.
+  /// Radiance emitted at a point on the side given; glTF emits from back faces of double-sided materials
+  /// only.
   Rgb emission(const SurfaceAttributes& attributes, bool front) const;
 
   /// Coverage in [0,1]: what part of light meets the surface at all (glTF alphaMode; 1 or 0 for MASK).
@@ -40,7 +42,7 @@ class Material {
   bool is_emissive() const { return is_emissive_; }
   /// Emits, but is no light: seen by rays that happen to meet it (KHR_materials_unlit).
   bool is_unlit() const { return description_.unlit; }
-  bool is_covering() const { return description_.alpha_mode == AlphaMode::opaque; }
+  bool is_opaque() const { return description_.alpha_mode == AlphaMode::opaque; }
   bool double_sided() const { return description_.double_sided; }
   /// Encloses a volume: its surface bends light and the inside absorbs.
   bool is_volume_boundary() const { return description_.thickness > 0 && description_.transmission > 0; }

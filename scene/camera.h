@@ -3,13 +3,14 @@
 #include <optional>
 
 #include "core/math/ray.h"
+#include "scene/bounds.h"
 #include "scene/description.h"
 
 namespace vernier {
 
-/// Pinhole or orthographic camera for a picture of width x height pixels. Raster x runs right, y down, (0,0) the
-/// outer corner of the first pixel. The vertical extent is the description's; the horizontal follows the picture's
-/// shape (square pixels).
+/// Pinhole or orthographic camera for a picture of width x height pixels. Raster x runs right, y down, (0,0)
+/// the outer corner of the first pixel. The vertical extent is the description's; the horizontal follows the
+/// picture's shape (square pixels).
 class Camera {
  public:
   Camera(const CameraDescription& description, int width, int height);
@@ -27,7 +28,7 @@ class Camera {
   float width_, height_;
 };
 
-/// Camera that sees the whole box from a pleasant angle: used when a scene has none.
-CameraDescription fitted_camera(const Vec3f& lower, const Vec3f& upper, float aspect);
+/// Camera that sees the whole box, for a picture of that width over height: used when a scene has none.
+CameraDescription fitted_camera(const Bounds& bounds, float aspect);
 
 }  // namespace vernier

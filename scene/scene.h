@@ -6,36 +6,73 @@
 #include <vector>
 
 #include "scene/accel/accelerator.h"
-#include "scene/description.h"
-#include "scene/surface_point.h"
+#include "scene/coverage.h"
+#include "scene/geometry.h"
+#include "scene/lights/environment.h"
+#include "scene/lights/light_set.h"
+#include "scene/shading.h"
 
 namespace vernier {
 
-struct Bounds {
-  Vec3f lower{std::numeric_limits<float>::infinity()}, upper{-std::numeric_limits<float>::infinity()};
-  bool empty() const { return !(lower.x <= upper.x); }
-};
-
-/// Everything that rays can meet and light can come from. Immutable once built; all members may be called from many
-/// threads.
+/// Everything that rays can meet and light can come from. Immutable once built; all members may be called
+/// from many threads.
 class Scene {
  public:
   struct Options {
     std::string accelerator;  ///< name in accelerators(); empty: the default
   };
 
-  /// Takes the description's arrays over. A description with no light of any kind gets a default sky and a notice.
+  /// Takes the description's arrays over. A description with no light of any kind gets a default sky and a
+  /// notice.
   Scene(SceneDescription description, const Options& options);
-  ~Scene();
-  Scene(Scene&&) noexcept;
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
 
-  const Bounds& bounds() const;
-  const Accelerator& accelerator() const;
-  const std::vector<Notice>& notices() const;
+  /// The first surface along a ray.
+  std::optional<SurfacePoint> intersect(const Ray& ray) const;
+  /// The same for rays from the camera, to which the backs of single-sided materials do not exist
+  /// (glTF 2.0, 3.9.6); all other rays meet both sides, because light does.
+  std::optional<SurfacePoint> intersect_from_camera(Ray ray) const;
+  /// Whether anything stands between the ends of a segment.
+  bool occluded(const Ray& segment) const { return accelerator_->occluded(segment); }
 
-  struct Data;  ///< scene/scene.cpp and its neighbours
+  /// The scattering at a surface point toward the unit direction wo.
+  Shading shade(const SurfacePoint& point, const Vec3f& wo) const;
+
+  /// Light shining on a point, the choice among lights included in the pdf (and, for delta lights, in the
+  /// radiance). u picks the light, v the point on it.
+  std::optional<LightSample> sample_light(const SurfacePoint& from, float u, const Vec2f& v) const;
+
+  /// Radiance that arrives along `ray` by emission at `hit` (null: from infinity), with the pdf with which
+  /// sample_light(*from) would have chosen it. from null: the camera, pdf 0.
+  LightEval emitted(const SurfacePoint* from, const Ray& ray, const SurfacePoint* hit) const;
+
+  const Material& material(const SurfacePoint& point) const {
+    return materials_[material_of_instance_[point.instance]];
+  }
+  const LightSet& lights() const { return lights_; }
+  const SceneGeometry& geometry() const { return geometry_; }
+  const Accelerator& accelerator() const { return *accelerator_; }
+  const Bounds& bounds() const { return geometry_.bounds(); }
+  const std::vector<Notice>& notices() const { return notices_; }
+
  private:
-  std::unique_ptr<Data> data_;
+  void compile_materials(const std::vector<MaterialDescription>& descriptions);
+  void build_accelerator(const std::string& name);
+  void collect_lights(const SceneDescription& description);
+
+  SceneGeometry geometry_;
+  std::vector<Texture> textures_;
+  std::vector<Material> materials_;
+  std::vector<uint32_t> material_of_instance_;  ///< index into materials_
+  std::optional<CoverageFilter> coverage_;
+  std::unique_ptr<Accelerator> accelerator_;
+  LightSet lights_;
+  std::vector<std::vector<int32_t>>
+      triangle_lights_;  ///< by instance and triangle: index into lights_, -1 for none
+  const EnvironmentLight* environment_ = nullptr;
+  int32_t environment_index_ = -1;
+  std::vector<Notice> notices_;
 };
 
 }  // namespace vernier

@@ -14,7 +14,7 @@ struct SurfacePoint {
   float t = 0;         ///< ray parameter of the hit
   float u = 0, v = 0;  ///< barycentrics of vertices 1 and 2
   uint32_t instance = 0, primitive = 0;
-  bool front = true;   ///< met from the front side
+  bool front = true;  ///< met from the front side
 
   /// Ray leaving the surface along w (world, any length), free of self-intersection.
   Ray spawn(const Vec3f& w) const { return {offset_ray_origin(position, error, ng, w), 0, w}; }

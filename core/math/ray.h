@@ -6,8 +6,8 @@
 
 namespace vernier {
 
-/// Half-line origin + t direction, for t in (t_min, t_max). The direction need not be a unit vector: t counts in its
-/// length.
+/// Half-line origin + t direction, for t in (t_min, t_max). The direction need not be a unit vector: t counts
+/// in its length.
 struct Ray {
   Vec3f origin{0, 0, 0};
   float t_min = 0;

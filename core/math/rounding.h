@@ -19,9 +19,9 @@ constexpr float gamma_bound(int n) {
 inline float next_float_up(float v) { return std::nextafter(v, std::numeric_limits<float>::infinity()); }
 inline float next_float_down(float v) { return std::nextafter(v, -std::numeric_limits<float>::infinity()); }
 
-/// Ray origin beside a surface point p known to within +-error per axis: p moved along the unit normal n far enough
-/// that the true surface cannot lie between, to the side that `direction` leaves by
-/// (Pharr, Jakob, Humphreys 2023, "Physically Based Rendering", 4th ed., 6.8.6).
+/// Ray origin beside a surface point p known to within +-error per axis: p moved along the unit normal n far
+/// enough that the true surface cannot lie between, to the side that `direction` leaves by (Pharr, Jakob,
+/// Humphreys 2023, "Physically Based Rendering", 4th ed., 6.8.6).
 inline Vec3f offset_ray_origin(const Vec3f& p, const Vec3f& error, const Vec3f& n, const Vec3f& direction) {
   const float distance = dot(abs(n), error);
   Vec3f offset = distance * n;

@@ -14,7 +14,8 @@ std::optional<Transform> Transform::inverse() const {
   inv.y = Vec3f(Vec3d(r0.y, r1.y, r2.y));
   inv.z = Vec3f(Vec3d(r0.z, r1.z, r2.z));
   inv.origin = Vec3f(Vec3d(-dot(r0, o), -dot(r1, o), -dot(r2, o)));
-  if (!is_finite(inv.x) || !is_finite(inv.y) || !is_finite(inv.z) || !is_finite(inv.origin)) return std::nullopt;
+  if (!is_finite(inv.x) || !is_finite(inv.y) || !is_finite(inv.z) || !is_finite(inv.origin))
+    return std::nullopt;
   return inv;
 }
 

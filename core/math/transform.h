@@ -17,7 +17,8 @@ struct Transform {
   /// normals forward. Not normalised.
   Vec3f transposed_vector(const Vec3f& n) const { return {dot(x, n), dot(y, n), dot(z, n)}; }
 
-  /// |linear part| v + |origin| factor, component-wise absolute values: carries rounding-error bounds through point().
+  /// |linear part| v + |origin| factor, component-wise absolute values: carries rounding-error bounds through
+  /// point().
   Vec3f absolute_point(const Vec3f& v, float origin_factor) const {
     return abs(x) * v.x + abs(y) * v.y + abs(z) * v.z + abs(origin) * origin_factor;
   }

@@ -14,7 +14,8 @@ using Vec3f = Imath::V3f;
 using Vec3d = Imath::V3d;
 using Vec4f = Imath::V4f;
 
-/// Linear Rec.709 (sRGB primaries, D65) colour: radiance in W m^-2 sr^-1, or a dimensionless reflectance or weight.
+/// Linear Rec.709 (sRGB primaries, D65) colour: radiance in W m^-2 sr^-1, or a dimensionless reflectance or
+/// weight.
 using Rgb = Imath::C3f;
 
 inline constexpr float pi = std::numbers::pi_v<float>;
@@ -61,7 +62,9 @@ Imath::Vec3<T> max(const Imath::Vec3<T>& a, const Imath::Vec3<T>& b) {
   return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
 
-inline bool is_finite(const Vec3f& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+inline bool is_finite(const Vec3f& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 inline float max_component(const Vec3f& v) { return std::max(v.x, std::max(v.y, v.z)); }
 
@@ -71,7 +74,7 @@ inline bool is_black(const Rgb& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 inline float luminance(const Rgb& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
 inline float lerp(float t, float a, float b) { return (1 - t) * a + t * b; }
-inline float square(float x) { return x * x; }
+constexpr float square(float x) { return x * x; }
 /// sqrt(max(0, x)): for 1 - x^2 that rounding may push below zero.
 inline float safe_sqrt(float x) { return std::sqrt(std::max(0.f, x)); }
 

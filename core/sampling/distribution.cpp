@@ -10,7 +10,8 @@ constexpr float one_minus_epsilon = 0x1.fffffep-1f;
 
 float usable(float weight) { return std::isfinite(weight) && weight > 0 ? weight : 0.f; }
 
-/// Writes running sums of `values` scaled to end at 1 into `cumulative` (one longer); returns the unscaled sum.
+/// Writes running sums of `values` scaled to end at 1 into `cumulative` (one longer); returns the unscaled
+/// sum.
 double accumulate(std::span<const float> values, std::span<float> cumulative) {
   double sum = 0;
   for (const float v : values) sum += v;

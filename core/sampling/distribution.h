@@ -33,8 +33,8 @@ class AliasTable {
   double sum_ = 0;
 };
 
-/// Piecewise-constant density on [0,1)^2 over a grid of columns x rows, row 0 at y = 0. Inverts cumulative sums, so
-/// that stratified points stay stratified.
+/// Piecewise-constant density on [0,1)^2 over a grid of columns x rows, row 0 at y = 0. Inverts cumulative
+/// sums, so that stratified points stay stratified.
 class Distribution2D {
  public:
   Distribution2D() = default;

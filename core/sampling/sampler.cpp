@@ -51,8 +51,8 @@ constexpr std::array<uint32_t, index_bits> direction_numbers(int dimension) {
   return v;
 }
 
-/// Generator matrices applied four index bits at a time. Both index and point are bit-reversed, which is the form
-/// that owen_hash takes.
+/// Generator matrices applied four index bits at a time. Both index and point are bit-reversed, which is the
+/// form that owen_hash takes.
 struct SobolTables {
   uint32_t nibble[dimensions][8][16];
 };
@@ -64,14 +64,15 @@ constexpr SobolTables make_tables() {
     for (int position = 0; position < 8; ++position)
       for (uint32_t value = 0; value < 16; ++value)
         for (int bit = 0; bit < 4; ++bit)
-          if ((value >> bit) & 1) tables.nibble[d][position][value] ^= reverse_bits(v[31 - (4 * position + bit)]);
+          if ((value >> bit) & 1)
+            tables.nibble[d][position][value] ^= reverse_bits(v[31 - (4 * position + bit)]);
   }
   return tables;
 }
 constexpr SobolTables tables = make_tables();
 
-/// Random permutation in which each bit depends on the seed and the lower bits only: on a reversed number, a nested
-/// uniform (Owen) scramble (Laine and Karras 2011; constants of Vegdahl 2021 as in pbrt-v4).
+/// Random permutation in which each bit depends on the seed and the lower bits only: on a reversed number, a
+/// nested uniform (Owen) scramble (Laine and Karras 2011; constants of Vegdahl 2021 as in pbrt-v4).
 uint32_t owen_hash(uint32_t v, uint32_t seed) {
   v ^= v * 0x3d20adeau;
   v += seed;
@@ -84,7 +85,8 @@ uint32_t owen_hash(uint32_t v, uint32_t seed) {
 }  // namespace
 
 Sampler::Sampler(uint32_t stream, uint32_t index, uint64_t seed)
-    : stream_hash_(mix_bits((uint64_t(mix_bits(seed)) << 32) ^ (stream + 0x9e3779b97f4a7c15ull * (seed + 1)))),
+    : stream_hash_(
+          mix_bits((uint64_t(mix_bits(seed)) << 32) ^ (stream + 0x9e3779b97f4a7c15ull * (seed + 1)))),
       reversed_index_(reverse_bits(index)) {
   start_block(0);
 }

@@ -10,13 +10,14 @@ namespace vernier {
 /// Owen-scrambled Sobol' numbers as a pure function of (pixel, sample index, dimension, seed).
 ///
 /// Dimensions come in blocks: one for the camera, one for each bounce. Within a block the numbers are one
-/// Sobol' point of up to eight dimensions, Owen-scrambled; between blocks the point order is shuffled by a nested
-/// uniform permutation (Burley 2020, "Practical Hash-based Owen Scrambling", JCGT 9(4)), so any run of 2^k samples
-/// starting at a multiple of 2^k is stratified in every block. A path that ends early or skips a draw shifts nothing:
-/// each draw has a fixed place.
+/// Sobol' point of up to eight dimensions, Owen-scrambled; between blocks the point order is shuffled by a
+/// nested uniform permutation (Burley 2020, "Practical Hash-based Owen Scrambling", JCGT 9(4)), so any run of
+/// 2^k samples starting at a multiple of 2^k is stratified in every block. A path that ends early or skips a
+/// draw shifts nothing: each draw has a fixed place.
 class Sampler {
  public:
-  /// `stream` names the pixel; samples of one stream and seed are stratified against each other, others independent.
+  /// `stream` names the pixel; samples of one stream and seed are stratified against each other, others
+  /// independent.
   Sampler(uint32_t stream, uint32_t index, uint64_t seed);
 
   /// Moves to the first dimension of block `block`.
@@ -33,7 +34,8 @@ class Sampler {
   uint32_t dimension_ = 0;
 };
 
-/// 64 to 32 bits, every input bit affecting every output bit (the finaliser of SplitMix64, Steele et al. 2014).
+/// 64 to 32 bits, every input bit affecting every output bit (the finaliser of SplitMix64, Steele et al.
+/// 2014).
 inline uint32_t mix_bits(uint64_t v) {
   v ^= v >> 30;
   v *= 0xbf58476d1ce4e5b9ull;

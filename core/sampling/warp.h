@@ -6,7 +6,8 @@
 
 namespace vernier {
 
-/// Concentric map of the square to the unit disk (Shirley and Chiu 1997), polar radius and angle chosen per wedge.
+/// Concentric map of the square to the unit disk (Shirley and Chiu 1997), polar radius and angle chosen per
+/// wedge.
 inline Vec2f sample_disk(const Vec2f& u) {
   const float a = 2 * u.x - 1;
   const float b = 2 * u.y - 1;

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <limits>
+
+#include "core/math/vec.h"
+
+namespace vernier {
+
+/// Axis-aligned box; empty until something is added.
+struct Bounds {
+  Vec3f lower{std::numeric_limits<float>::infinity()};
+  Vec3f upper{-std::numeric_limits<float>::infinity()};
+
+  bool empty() const { return !(lower.x <= upper.x); }
+  void add(const Vec3f& p) {
+    lower = min(lower, p);
+    upper = max(upper, p);
+  }
+  Vec3f center() const { return (lower + upper) * 0.5f; }
+  /// Radius of the sphere about the center through the corners; 0 when empty.
+  float radius() const { return empty() ? 0 : length(upper - lower) / 2; }
+};
+
+}  // namespace vernier

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "materials/material.h"
+#include "scene/accel/accelerator.h"
+#include "scene/bounds.h"
+#include "scene/surface_point.h"
+
+namespace vernier {
+
+/// The scene's triangles: meshes, their instances, and what lies at a point of one. A mesh with a single
+/// instance is moved into world space at construction, so that most scenes need one level only.
+class SceneGeometry {
+ public:
+  SceneGeometry(std::vector<MeshDescription> meshes, const std::vector<InstanceDescription>& instances);
+
+  /// View of it for accelerators; valid as long as this object. No instance is filtered.
+  Geometry view() const;
+  const Bounds& bounds() const { return bounds_; }
+
+  size_t instance_count() const { return instances_.size(); }
+  size_t triangle_count(uint32_t instance) const { return mesh_of(instance).triangles.size(); }
+  uint32_t material_of(uint32_t instance) const { return instances_[instance].material; }
+  bool has_colors(uint32_t instance) const { return !mesh_of(instance).colors.empty(); }
+  size_t stored_triangles() const;
+  size_t instanced_triangles() const;
+
+  /// World-space corners of a triangle in winding order (counter-clockwise seen from its front).
+  std::array<Vec3f, 3> triangle(uint32_t instance, uint32_t primitive) const;
+
+  SurfacePoint surface_point(const Ray& ray, const RawHit& hit) const;
+  /// Point of a triangle by barycentrics, with its error bound; t and front are not set.
+  SurfacePoint surface_point(uint32_t instance, uint32_t primitive, const Vec2f& barycentrics) const;
+
+  SurfaceAttributes attributes(const SurfacePoint& point) const;
+
+  /// World-space unit normal interpolated from the vertices (the geometric one where a mesh has none), front
+  /// side.
+  Vec3f shading_normal(const SurfacePoint& point) const;
+
+  /// World-space tangent frame for normal maps and anisotropy along texture set `texcoord`, front side: the
+  /// file's tangents for set 0, else the direction in which u grows on the triangle.
+  struct TangentFrame {
+    Vec3f tangent, bitangent;
+  };
+  TangentFrame tangent_frame(const SurfacePoint& point, const Vec3f& normal, int texcoord) const;
+
+ private:
+  struct Instance {
+    uint32_t mesh = 0, material = 0;
+    Transform to_world;
+    Transform normal_inverse;  ///< inverse of to_world; its transposed_vector maps normals
+    bool is_identity = true;
+    float orientation = 1;  ///< -1: to_world mirrors, and with it the winding
+  };
+
+  const MeshDescription& mesh_of(uint32_t instance) const { return meshes_[instances_[instance].mesh]; }
+  void bake(Instance& instance);
+
+  std::vector<MeshDescription> meshes_;
+  std::vector<Instance> instances_;
+  Bounds bounds_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+
+#include "scene/bounds.h"
+#include "scene/surface_point.h"
+
+namespace vernier {
+
+/// Light that may reach a point from one direction, before visibility.
+struct LightSample {
+  Vec3f wi;               ///< unit, from the point toward the light
+  Rgb radiance{0, 0, 0};  ///< radiance; for a delta light the irradiance on a surface facing it
+  float pdf = 0;          ///< per solid angle; 1 for a delta light
+  bool is_delta = false;  ///< cannot be met by a ray
+  Ray shadow;             ///< blocked: the light is not seen
+};
+
+/// Light met along a direction, and how sample() would have produced it.
+struct LightEval {
+  Rgb radiance{0, 0, 0};
+  float pdf = 0;  ///< per solid angle; 0: sample() never does
+};
+
+/// A source of light. Immutable; called from many threads.
+class Light {
+ public:
+  virtual ~Light() = default;
+
+  /// A direction from `from` toward the light; empty where it contributes nothing.
+  virtual std::optional<LightSample> sample(const SurfacePoint& from, const Vec2f& u) const = 0;
+
+  /// What arrives at `from` along the unit direction -wi from the point `on` of this light (null: from
+  /// infinity).
+  virtual LightEval eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const = 0;
+
+  /// Emitted power in watts, as far as needed to choose between lights; positive if the light contributes
+  /// anywhere. `scene`: bounds that lights at infinity shine on.
+  virtual float power(const Bounds& scene) const = 0;
+
+  /// Whether its samples are delta ones, always.
+  virtual bool is_delta() const { return false; }
+};
+
+}  // namespace vernier

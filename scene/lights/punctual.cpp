@@ -1,0 +1,64 @@
+#include "scene/lights/punctual.h"
+
+namespace vernier {
+
+using Kind = PunctualLightDescription::Kind;
+
+PunctualLight::PunctualLight(const PunctualLightDescription& d, const Bounds& scene)
+    : kind_(d.kind),
+      position_(d.to_world.origin),
+      direction_(normalize(-d.to_world.z)),
+      intensity_(d.color * d.intensity),
+      range_(d.range),
+      cos_inner_(std::cos(d.inner_cone)),
+      cos_outer_(std::cos(d.outer_cone)),
+      reach_(4 * scene.radius() + 1) {}
+
+std::optional<LightSample> PunctualLight::sample(const SurfacePoint& from, const Vec2f& /*u*/) const {
+  LightSample sample;
+  sample.pdf = 1;
+  sample.is_delta = true;
+  if (kind_ == Kind::directional) {
+    sample.wi = -direction_;
+    sample.radiance = intensity_;
+    sample.shadow = from.spawn(sample.wi);
+    sample.shadow.t_max = reach_;
+    return sample;
+  }
+  const Vec3f to_light = position_ - from.position;
+  const float distance2 = length_squared(to_light);
+  if (!(distance2 > 0)) return std::nullopt;
+  sample.wi = to_light * (1 / std::sqrt(distance2));
+  // Window that ends smoothly at the range (KHR_lights_punctual, "Range Property").
+  float attenuation = 1 / distance2;
+  if (std::isfinite(range_)) attenuation *= std::clamp(1 - square(distance2 / square(range_)), 0.f, 1.f);
+  if (kind_ == Kind::spot) {
+    const float cosine = -dot(sample.wi, direction_);
+    attenuation *=
+        square(std::clamp((cosine - cos_outer_) / std::max(1e-3f, cos_inner_ - cos_outer_), 0.f, 1.f));
+  }
+  if (!(attenuation > 0)) return std::nullopt;
+  sample.radiance = intensity_ * attenuation;
+  sample.shadow = from.spawn_to(position_, {0, 0, 0}, {0, 0, 1});
+  return sample;
+}
+
+LightEval PunctualLight::eval(const SurfacePoint& /*from*/, const Vec3f& /*wi*/,
+                              const SurfacePoint* /*on*/) const {
+  return {};
+}
+
+float PunctualLight::power(const Bounds& scene) const {
+  const float intensity = luminance(intensity_);
+  switch (kind_) {
+    case Kind::point:
+      return 4 * pi * intensity;
+    case Kind::spot:
+      return 2 * pi * intensity * ((1 - cos_inner_) + (cos_inner_ - cos_outer_) / 3);
+    case Kind::directional:
+      return pi * square(scene.radius()) * intensity;
+  }
+  return 0;
+}
+
+}  // namespace vernier

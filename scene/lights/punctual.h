@@ -1,0 +1,26 @@
+#pragma once
+
+#include "scene/description.h"
+#include "scene/lights/light.h"
+
+namespace vernier {
+
+/// Point, spot or directional light of KHR_lights_punctual: a delta light, which no ray meets.
+class PunctualLight : public Light {
+ public:
+  PunctualLight(const PunctualLightDescription& description, const Bounds& scene);
+
+  std::optional<LightSample> sample(const SurfacePoint& from, const Vec2f& u) const override;
+  LightEval eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const override;
+  float power(const Bounds& scene) const override;
+  bool is_delta() const override { return true; }
+
+ private:
+  PunctualLightDescription::Kind kind_;
+  Vec3f position_, direction_;  ///< direction: where spot and directional lights shine to
+  Rgb intensity_;
+  float range_, cos_inner_, cos_outer_;
+  float reach_;  ///< length of a directional light's shadow rays
+};
+
+}  // namespace vernier

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "scene/geometry.h"
+#include "scene/lights/light.h"
+
+namespace vernier {
+
+/// One emissive triangle, sampled by area. The emission may vary over it by texture.
+class TriangleLight : public Light {
+ public:
+  TriangleLight(const SceneGeometry& geometry, const Material& material, uint32_t instance,
+                uint32_t primitive);
+
+  std::optional<LightSample> sample(const SurfacePoint& from, const Vec2f& u) const override;
+  LightEval eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const override;
+  float power(const Bounds& scene) const override;
+
+ private:
+  Rgb emission(const SurfacePoint& point, bool front) const;
+
+  const SceneGeometry* geometry_;
+  const Material* material_;
+  uint32_t instance_, primitive_;
+  float area_;
+};
+
+}  // namespace vernier

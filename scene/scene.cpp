@@ -1,0 +1,174 @@
+#include "scene/scene.h"
+
+#include <map>
+
+#include "core/base/names.h"
+#include "core/base/parallel.h"
+#include "scene/lights/punctual.h"
+#include "scene/lights/triangle_light.h"
+
+namespace vernier {
+namespace {
+
+/// What a scene without any light is shown under: a soft sky, radiance 1 overhead falling to 0.6 at the
+/// horizon and 0.3 below it, so that shapes read and a white diffuse surface facing up shows close to 1.
+std::shared_ptr<const EnvironmentDescription> default_sky() {
+  constexpr int width = 2, height = 64;
+  auto picture = std::make_shared<Image>(width, height, 3);
+  for (int y = 0; y < height; ++y) {
+    const float up = std::cos(pi * (float(y) + 0.5f) / height);
+    const float value = up > 0 ? 0.6f + 0.4f * up : 0.3f;
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < 3; ++c) picture->pixel(x, y)[c] = value;
+  }
+  auto sky = std::make_shared<EnvironmentDescription>();
+  sky->picture = std::move(picture);
+  return sky;
+}
+
+}  // namespace
+
+Scene::Scene(SceneDescription description, const Options& options)
+    : geometry_(std::move(description.meshes), description.instances),
+      textures_(std::move(description.textures)) {
+  compile_materials(description.materials);
+  build_accelerator(options.accelerator);
+  collect_lights(description);
+}
+
+void Scene::compile_materials(const std::vector<MaterialDescription>& descriptions) {
+  // A material may be used with and without vertex colours, which are two compiled materials.
+  std::map<std::pair<uint32_t, bool>, uint32_t> compiled;
+  for (uint32_t i = 0; i < geometry_.instance_count(); ++i) {
+    const std::pair key(geometry_.material_of(i), geometry_.has_colors(i));
+    const auto [entry, is_new] = compiled.try_emplace(key, uint32_t(materials_.size()));
+    if (is_new) materials_.emplace_back(descriptions[key.first], textures_, key.second);
+    material_of_instance_.push_back(entry->second);
+  }
+}
+
+void Scene::build_accelerator(const std::string& name) {
+  Geometry view = geometry_.view();
+  for (size_t i = 0; i < view.instances.size(); ++i)
+    view.instances[i].filtered = !materials_[material_of_instance_[i]].is_opaque();
+  if (std::any_of(view.instances.begin(), view.instances.end(), [](const auto& i) { return i.filtered; })) {
+    coverage_.emplace(geometry_, materials_, material_of_instance_);
+    view.filter = &*coverage_;
+  }
+  const auto& entry =
+      name.empty() ? accelerators().front() : find_by_name(accelerators(), "accelerator", name);
+  accelerator_ = entry.build(view);
+}
+
+void Scene::collect_lights(const SceneDescription& description) {
+  std::vector<std::unique_ptr<Light>> lights;
+  const auto add = [&](std::unique_ptr<Light> light) {
+    lights.push_back(std::move(light));
+    return int32_t(lights.size()) - 1;
+  };
+
+  triangle_lights_.resize(geometry_.instance_count());
+  for (uint32_t i = 0; i < geometry_.instance_count(); ++i) {
+    const Material& material = materials_[material_of_instance_[i]];
+    if (!material.is_emissive() || material.is_unlit()) continue;
+    std::vector<std::unique_ptr<Light>> candidates(geometry_.triangle_count(i));
+    parallel_for(candidates.size(), [&](size_t primitive) {
+      auto light = std::make_unique<TriangleLight>(geometry_, material, i, uint32_t(primitive));
+      if (light->power(bounds()) > 0) candidates[primitive] = std::move(light);
+    });
+    triangle_lights_[i].assign(candidates.size(), -1);
+    for (size_t primitive = 0; primitive < candidates.size(); ++primitive)
+      if (candidates[primitive]) triangle_lights_[i][primitive] = add(std::move(candidates[primitive]));
+  }
+  for (const auto& punctual : description.lights) {
+    auto light = std::make_unique<PunctualLight>(punctual, bounds());
+    if (light->power(bounds()) > 0) add(std::move(light));
+  }
+  auto sky = description.environment;
+  if (!sky && lights.empty()) {
+    sky = default_sky();
+    notices_.push_back(
+        {Notice::Severity::info, "",
+         "the scene has no light: using the default sky (radiance 1 overhead, 0.6 at the horizon, 0.3 "
+         "from below); --env FILE sets another"});
+  }
+  if (sky) {
+    auto light = std::make_unique<EnvironmentLight>(sky);
+    if (light->bad_texels() > 0)
+      notices_.push_back(
+          {Notice::Severity::warning, "environment",
+           std::to_string(light->bad_texels()) + " values are negative or not finite; taken as black"});
+    environment_ = light.get();
+    environment_index_ = add(std::move(light));
+  }
+  lights_ = LightSet(std::move(lights), bounds());
+}
+
+std::optional<SurfacePoint> Scene::intersect(const Ray& ray) const {
+  const auto hit = accelerator_->closest(ray);
+  if (!hit) return std::nullopt;
+  return geometry_.surface_point(ray, *hit);
+}
+
+std::optional<SurfacePoint> Scene::intersect_from_camera(Ray ray) const {
+  while (auto point = intersect(ray)) {
+    const Material& material = this->material(*point);
+    if (point->front || material.double_sided() || material.is_volume_boundary()) return point;
+    // Go on behind the invisible side. Starting beyond the hit's own error keeps the parameter t of the first
+    // ray.
+    const float error = max_component(point->error) / length(ray.direction);
+    ray.t_min = std::max(next_float_up(point->t), point->t + 2 * error);
+  }
+  return std::nullopt;
+}
+
+Shading Scene::shade(const SurfacePoint& point, const Vec3f& wo) const {
+  const Material& material = this->material(point);
+  const SurfaceAttributes attributes =
+      material.needs_attributes() ? geometry_.attributes(point) : SurfaceAttributes{};
+  Vec3f normal = geometry_.shading_normal(point);
+  if (material.has_normal_map()) {
+    const auto [tangent, bitangent] = geometry_.tangent_frame(point, normal, material.normal_texcoord());
+    const Vec3f n = material.tangent_space_normal(attributes);
+    normal = normalize(tangent * n.x + bitangent * n.y + normal * n.z);
+  }
+  const Vec3f ng = point.front ? point.ng : -point.ng;
+  if (!point.front) normal = -normal;
+  // A normal turned away from the viewer has no meaning; the true one has.
+  if (dot(normal, wo) <= 1e-4f) normal = ng;
+  return {Frame::from_normal(normal), ng, wo, material.bsdf(attributes, point.front)};
+}
+
+std::optional<LightSample> Scene::sample_light(const SurfacePoint& from, float u, const Vec2f& v) const {
+  const auto [light, prob] = lights_.choose(from, u);
+  if (!light) return std::nullopt;
+  auto sample = light->sample(from, v);
+  if (!sample) return std::nullopt;
+  if (sample->is_delta)
+    sample->radiance /= prob;
+  else
+    sample->pdf *= prob;
+  return sample;
+}
+
+LightEval Scene::emitted(const SurfacePoint* from, const Ray& ray, const SurfacePoint* hit) const {
+  int32_t index = environment_index_;
+  if (hit) {
+    const Material& material = this->material(*hit);
+    if (!material.is_emissive()) return {};
+    const auto& of_triangle = triangle_lights_[hit->instance];
+    index = of_triangle.empty() ? -1 : of_triangle[hit->primitive];
+    if (index < 0 || !from) {
+      const auto attributes = material.needs_attributes() ? geometry_.attributes(*hit) : SurfaceAttributes{};
+      return {material.emission(attributes, hit->front), 0};
+    }
+  } else {
+    if (!environment_) return {};
+    if (!from) return {environment_->radiance(ray.direction), 0};
+  }
+  LightEval light = lights_[size_t(index)].eval(*from, ray.direction, hit);
+  light.pdf *= lights_.prob(*from, size_t(index));
+  return light;
+}
+
+}  // namespace vernier
