@@ -15,11 +15,12 @@ foreach(property INTERFACE_INCLUDE_DIRECTORIES INTERFACE_SYSTEM_INCLUDE_DIRECTOR
   endforeach()
   set_target_properties(OpenImageIO::OpenImageIO PROPERTIES ${property} "${there}")
 endforeach()
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(webp REQUIRED IMPORTED_TARGET libwebp)
 # Debian installs OpenColorIO's CMake files where CMake does not look and with a wrong prefix in them; its pkg-config
 # file is right.
 find_package(OpenColorIO 2.1 CONFIG QUIET)
 if(NOT OpenColorIO_FOUND)
-  find_package(PkgConfig REQUIRED)
   pkg_check_modules(opencolorio REQUIRED IMPORTED_TARGET OpenColorIO>=2.1)
   add_library(OpenColorIO::OpenColorIO ALIAS PkgConfig::opencolorio)
 endif()
@@ -38,3 +39,11 @@ message(STATUS "Embree ${embree_VERSION}")
 if(VERNIER_TESTS)
   find_package(GTest REQUIRED)
 endif()
+
+# What the statistics say the program was built with.
+foreach(library embree TBB OpenImageIO OpenColorIO opencolorio Imath TinyGLTF)
+  if(${library}_VERSION)
+    list(APPEND VERNIER_LIBRARIES "${library} ${${library}_VERSION}")
+  endif()
+endforeach()
+list(JOIN VERNIER_LIBRARIES "," VERNIER_LIBRARIES)

@@ -3,6 +3,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
+#include <webp/decode.h>
 
 #include <array>
 #include <cerrno>
@@ -61,44 +62,28 @@ OIIO::ImageSpec read_config() {
   return config;
 }
 
-struct OpenedImage {
-  std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;  // outlives `input`, which reads from it
-  OIIO::ImageInput::unique_ptr input;
-};
-
-OpenedImage open_memory(std::span<const uint8_t> bytes, const ImageHeader& header, const std::string& name,
-                        const ImageLimits& limits) {
-  check_size(name, header.width, header.height, 1, bytes.size(), limits);
-  if (!header.intact)
-    throw input_error(name,
-                      fmt::format("{} image is truncated or damaged ({} bytes); get a whole copy of the file",
-                                  header.format, bytes.size()));
-  OpenedImage opened;
-  opened.memory = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size());
-  opened.input = OIIO::ImageInput::create(header.format);
-  if (!opened.input)
-    throw input_error(name, fmt::format("this OpenImageIO cannot read {} images: {}", header.format,
-                                        one_line(OIIO::geterror())));
-  opened.input->set_ioproxy(opened.memory.get());
-  OIIO::ImageSpec spec;
-  // The name's extension must be the format's: some readers check it.
-  if (!opened.input->open(fmt::format("memory.{}", header.format), spec, read_config()))
-    throw input_error(
-        name, fmt::format("cannot decode {} image: {}", header.format, one_line(opened.input->geterror())));
-  return opened;
+// OpenImageIO 2.4 multiplies WebP's colours by alpha whatever it is asked, so libwebp is called here.
+Image8 decode_webp(std::span<const uint8_t> bytes, const std::string& name) {
+  WebPBitstreamFeatures features;
+  if (WebPGetFeatures(bytes.data(), bytes.size(), &features) != VP8_STATUS_OK)
+    throw input_error(name, "cannot decode webp image, it is damaged");
+  if (features.has_animation)
+    throw input_error(name, "animated WebP cannot be used; expected a still picture");
+  Image8 image(features.width, features.height, features.has_alpha ? 4 : 3);
+  const auto decode = features.has_alpha ? WebPDecodeRGBAInto : WebPDecodeRGBInto;
+  if (!decode(bytes.data(), bytes.size(), image.values.data(), image.values.size(),
+              image.width * image.channels))
+    throw input_error(name, "cannot decode webp image, it is damaged");
+  return image;
 }
 
-OpenedImage open_file(const std::string& path, const ImageLimits& limits) {
-  OpenedImage opened;
-  const OIIO::ImageSpec config = read_config();
-  opened.input = OIIO::ImageInput::open(path, &config);
-  if (!opened.input) throw input_error(path, "cannot read as an image: " + one_line(OIIO::geterror()));
-  const OIIO::ImageSpec& spec = opened.input->spec();
-  if (spec.depth > 1 || spec.deep)
-    throw input_error(path, "volume and deep images cannot be used; expected a flat one");
-  check_size(path, spec.width, spec.height, spec.nchannels, fs::file_size(path), limits);
-  check_size(path, spec.full_width, spec.full_height, spec.nchannels, fs::file_size(path), limits);
-  return opened;
+template <typename T>
+BasicImage<T> convert(Image8 image) {
+  if constexpr (std::is_same_v<T, uint8_t>) return image;
+  BasicImage<T> converted(image.width, image.height, image.channels);
+  std::transform(image.values.begin(), image.values.end(), converted.values.begin(),
+                 [](uint8_t value) { return T(value) / 255; });
+  return converted;
 }
 
 template <typename T>
@@ -109,6 +94,42 @@ BasicImage<T> read_all_channels(OIIO::ImageInput& input, const std::string& name
   if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::BaseTypeFromC<T>::value, image.values.data()))
     throw input_error(name, "cannot decode image, it is damaged: " + one_line(input.geterror()));
   return image;
+}
+
+// A whole PNG, JPEG or WebP, all its channels.
+template <typename T>
+BasicImage<T> decode(std::span<const uint8_t> bytes, const ImageHeader& header, const std::string& name,
+                     const ImageLimits& limits) {
+  check_size(name, header.width, header.height, 1, bytes.size(), limits);
+  if (!header.intact)
+    throw input_error(name,
+                      fmt::format("{} image is truncated or damaged ({} bytes); get a whole copy of the file",
+                                  header.format, bytes.size()));
+  if (header.format == std::string_view("webp")) return convert<T>(decode_webp(bytes, name));
+  OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
+  const auto input = OIIO::ImageInput::create(header.format);
+  if (!input)
+    throw input_error(name, fmt::format("this OpenImageIO cannot read {} images: {}", header.format,
+                                        one_line(OIIO::geterror())));
+  input->set_ioproxy(&memory);
+  OIIO::ImageSpec spec;
+  // The name's extension must be the format's: some readers check it.
+  if (!input->open(fmt::format("memory.{}", header.format), spec, read_config()))
+    throw input_error(name,
+                      fmt::format("cannot decode {} image: {}", header.format, one_line(input->geterror())));
+  return read_all_channels<T>(*input, name);
+}
+
+OIIO::ImageInput::unique_ptr open_file(const std::string& path, const ImageLimits& limits) {
+  const OIIO::ImageSpec config = read_config();
+  auto input = OIIO::ImageInput::open(path, &config);
+  if (!input) throw input_error(path, "cannot read as an image: " + one_line(OIIO::geterror()));
+  const OIIO::ImageSpec& spec = input->spec();
+  if (spec.depth > 1 || spec.deep)
+    throw input_error(path, "volume and deep images cannot be used; expected a flat one");
+  check_size(path, spec.width, spec.height, spec.nchannels, fs::file_size(path), limits);
+  check_size(path, spec.full_width, spec.full_height, spec.nchannels, fs::file_size(path), limits);
+  return input;
 }
 
 std::vector<uint8_t> read_bytes(const std::string& path, size_t at_most = SIZE_MAX) {
@@ -122,13 +143,17 @@ std::vector<uint8_t> read_bytes(const std::string& path, size_t at_most = SIZE_M
   return bytes;
 }
 
+using RgbChannels = std::array<int, 3>;
+
+RgbChannels first_channels(int channels) {
+  return channels >= 3 ? RgbChannels{0, 1, 2} : RgbChannels{0, 0, 0};
+}
+
 // Indices of red, green and blue: by name where the file has them, else the first three, else grey three
 // times.
-std::array<int, 3> rgb_channels(const OIIO::ImageSpec& spec) {
-  const std::array<int, 3> named{spec.channelindex("R"), spec.channelindex("G"), spec.channelindex("B")};
-  if (named[0] >= 0 && named[1] >= 0 && named[2] >= 0) return named;
-  if (spec.nchannels >= 3) return {0, 1, 2};
-  return {0, 0, 0};
+RgbChannels rgb_channels(const OIIO::ImageSpec& spec) {
+  const RgbChannels named{spec.channelindex("R"), spec.channelindex("G"), spec.channelindex("B")};
+  return named[0] >= 0 && named[1] >= 0 && named[2] >= 0 ? named : first_channels(spec.nchannels);
 }
 
 // Where the stored pixels lie in the picture. OpenEXR's data window may cover only part of the picture, or
@@ -143,12 +168,11 @@ Placement placement(const OIIO::ImageInput& input) {
   return {spec.full_width, spec.full_height, spec.x - spec.full_x, spec.y - spec.full_y};
 }
 
-template <size_t Count>
-Image place(const Image& stored, const Placement& where, const std::array<int, Count>& channels) {
-  Image picture(where.width, where.height, int(Count));
+Image place(const Image& stored, const Placement& where, const RgbChannels& channels) {
+  Image picture(where.width, where.height, 3);
   for (int y = std::max(0, where.top); y < std::min(where.height, where.top + stored.height); ++y)
     for (int x = std::max(0, where.left); x < std::min(where.width, where.left + stored.width); ++x)
-      for (size_t c = 0; c < Count; ++c)
+      for (int c = 0; c < 3; ++c)
         picture.pixel(x, y)[c] = stored.pixel(x - where.left, y - where.top)[channels[c]];
   return picture;
 }
@@ -157,15 +181,14 @@ Image place(const Image& stored, const Placement& where, const std::array<int, C
 
 Image read_image(const std::string& path, const ImageLimits& limits) {
   std::vector<uint8_t> bytes = read_bytes(path, 32);
-  OpenedImage opened;
   if (parse_image_header(bytes)) {
     bytes = read_bytes(path);
-    opened = open_memory(bytes, *parse_image_header(bytes), path, limits);
-  } else {
-    opened = open_file(path, limits);
+    const Image stored = decode<float>(bytes, *parse_image_header(bytes), path, limits);
+    return place(stored, {stored.width, stored.height, 0, 0}, first_channels(stored.channels));
   }
-  const Image stored = read_all_channels<float>(*opened.input, path);
-  return place(stored, placement(*opened.input), rgb_channels(opened.input->spec()));
+  const auto input = open_file(path, limits);
+  const Image stored = read_all_channels<float>(*input, path);
+  return place(stored, placement(*input), rgb_channels(input->spec()));
 }
 
 Image8 decode_image8(std::span<const uint8_t> bytes, const std::string& name, const ImageLimits& limits) {
@@ -173,8 +196,7 @@ Image8 decode_image8(std::span<const uint8_t> bytes, const std::string& name, co
   if (!header)
     throw input_error(name, bytes.empty() ? "image has no bytes"
                                           : "not a PNG, JPEG or WebP image; convert it to one of these");
-  const OpenedImage opened = open_memory(bytes, *header, name, limits);
-  Image8 image = read_all_channels<uint8_t>(*opened.input, name);
+  Image8 image = decode<uint8_t>(bytes, *header, name, limits);
   if (image.channels > 4)
     throw input_error(name, fmt::format("image has {} channels; expected 1 to 4", image.channels));
   return image;
