@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <set>
 
 namespace vernier::apps {
 
@@ -18,14 +16,10 @@ std::string one_line(std::string_view text) {
 
 void print_error(std::string_view text) { fmt::print(stderr, "error: {}\n", one_line(text)); }
 
-void print_notices(std::span<const Notice> notices) {
-  std::set<std::string> printed;
-  for (const Notice& notice : notices) {
-    const bool warning = notice.severity == Notice::Severity::warning;
-    const std::string line = fmt::format("{}: {}{}{}", warning ? "warning" : "note", notice.place,
-                                         notice.place.empty() ? "" : ": ", notice.text);
-    if (printed.insert(line).second) fmt::print(stderr, "{}\n", one_line(line));
-  }
+std::string describe(const Notice& notice) {
+  const bool warning = notice.severity == Notice::Severity::warning;
+  return one_line(fmt::format("{}: {}{}{}", warning ? "warning" : "note", notice.place,
+                              notice.place.empty() ? "" : ": ", notice.text));
 }
 
 std::string shell_quoted(std::span<const char* const> words) {

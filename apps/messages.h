@@ -15,8 +15,8 @@ std::string one_line(std::string_view text);
 
 void print_error(std::string_view text);
 
-/// Each different notice once, in order.
-void print_notices(std::span<const Notice> notices);
+/// "warning: PLACE: TEXT" or "note: ..."
+std::string describe(const Notice& notice);
 
 /// The words of a command line as a shell would read them back: quoted where that is needed.
 std::string shell_quoted(std::span<const char* const> words);

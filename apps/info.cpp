@@ -1,0 +1,110 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/commands.h"
+#include "apps/messages.h"
+#include "apps/notice_log.h"
+#include "apps/scene_json.h"
+#include "apps/scene_summary.h"
+#include "core/base/error.h"
+#include "core/base/quantities.h"
+#include "scene/geometry.h"
+#include "scene/import/import.h"
+
+namespace vernier::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InfoFlags {
+  std::string scene;
+  bool json = false, strict = false;
+};
+
+/// "kind perspective, vertical_degrees 40": the entries of an object that differ from `defaults`.
+std::string describe_object(const Json& object, const Json& defaults) {
+  std::string text;
+  for (const auto& [key, value] : object.items()) {
+    if (key == "name" || value.is_null() || (defaults.contains(key) && defaults[key] == value)) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key,
+                        value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  return text;
+}
+
+void print_list(const char* title, const Json& list, const Json& defaults = Json::object()) {
+  if (list.empty()) return;
+  fmt::print("{}\n", title);
+  for (size_t i = 0; i < list.size(); ++i) {
+    const auto name = list[i]["name"].get<std::string>();
+    const std::string text = one_line(
+        fmt::format("  {}{}{}: {}", i, name.empty() ? "" : " ", name, describe_object(list[i], defaults)));
+    fmt::print("{}\n", text);
+  }
+}
+
+void print_features(const Json& features) {
+  if (features.empty()) return;
+  fmt::print("features used\n");
+  for (const Json& feature : features) {
+    const auto note = feature["note"].get<std::string>();
+    fmt::print("  {}\n",
+               one_line(fmt::format("{}: {}{}{}", feature["name"].get<std::string>(),
+                                    feature["status"].get<std::string>(), note.empty() ? "" : ", ", note)));
+  }
+}
+
+std::string bounds_text(const Bounds& bounds) {
+  if (bounds.empty()) return "empty";
+  const Vec3f size = bounds.upper - bounds.lower;
+  return fmt::format("{:.6g} x {:.6g} x {:.6g} m, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})",
+                     size.x, size.y, size.z, bounds.lower.x, bounds.lower.y, bounds.lower.z, bounds.upper.x,
+                     bounds.upper.y, bounds.upper.z);
+}
+
+void print_text(const Json& scene, const SceneCounts& counts, const Bounds& bounds) {
+  fmt::print("{}\n", one_line(scene["file"].get<std::string>()));
+  fmt::print("hash       {}\n", scene["hash"].get<std::string>());
+  fmt::print("bounds     {}\n", bounds_text(bounds));
+  fmt::print("meshes     {}, of {} triangles and {} vertices\n", counts.meshes, counts.triangles,
+             counts.vertices);
+  fmt::print("instances  {}, of {} triangles\n", counts.instances, counts.instanced_triangles);
+  fmt::print("materials  {}\n", counts.materials);
+  fmt::print("textures   {}, {} decoded\n", counts.textures, format_bytes(double(counts.texture_bytes)));
+  fmt::print("lights     {} punctual, {} emissive triangles\n", counts.punctual_lights,
+             counts.emissive_triangles);
+  print_list("cameras", scene["cameras"]);
+  print_list("punctual lights", scene["punctual_lights"]);
+  print_list("materials", scene["materials"], material_json(MaterialDescription{}));
+  print_features(scene["features"]);
+}
+
+ExitCode run_info(const InfoFlags& flags) {
+  if (flags.scene.empty())
+    throw Error(ErrorKind::usage, "which scene? Give a .gltf or .glb file; see vernier info --help");
+  SceneDescription scene = import_scene(flags.scene, {flags.strict});
+  const SceneCounts counts = count(scene);
+  const Bounds bounds = SceneGeometry(std::move(scene.meshes), scene.instances).bounds();
+  const Json json = scene_json(scene, counts, bounds);
+  if (flags.json) {
+    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    return ExitCode::done;
+  }
+  print_text(json, counts, bounds);
+  NoticeLog(false).add(scene.notices);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void register_info(Program& program) {
+  CLI::App* command = program.app.add_subcommand("info", "Say what a scene holds and how it is honoured");
+  auto flags = std::make_shared<InfoFlags>();
+  command->add_option("SCENE", flags->scene, "glTF 2.0 scene (.gltf, .glb)")->type_name("");
+  command->add_flag("--json", flags->json, "as JSON on standard output");
+  command->add_flag("--strict", flags->strict, "refuse a scene that is not honoured exactly");
+  command->callback([&program, flags] { program.run = [flags] { return run_info(*flags); }; });
+}
+
+}  // namespace vernier::apps

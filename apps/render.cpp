@@ -1,0 +1,139 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "apps/choose_camera.h"
+#include "apps/commands.h"
+#include "apps/notice_log.h"
+#include "apps/progress.h"
+#include "apps/render_options.h"
+#include "apps/render_report.h"
+#include "apps/scene_summary.h"
+#include "apps/stop_signals.h"
+#include "core/base/parallel.h"
+#include "core/base/text_file.h"
+#include "core/image/display.h"
+#include "core/image/image_io.h"
+#include "scene/camera.h"
+#include "scene/import/import.h"
+#include "scene/scene.h"
+
+namespace vernier::apps {
+namespace {
+
+class Stopwatch {
+ public:
+  /// Seconds since the last call, or since construction.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const std::chrono::duration<double> elapsed = now - last_;
+    last_ = now;
+    return elapsed.count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+void warn_of_bad_samples(const RenderResult& result, const RenderFlags& flags, NoticeLog& log) {
+  if (result.bad_samples == 0) return;
+  std::string replay;
+  if (!result.bad_sample_examples.empty()) {
+    const BadSample& first = result.bad_sample_examples.front();
+    replay = fmt::format(
+        "; sample {} of pixel {},{} is one, and the same command with --crop 1x1+{}+{} --spp {} --seed {} "
+        "replays it",
+        first.index, first.x, first.y, first.x, first.y, first.index + 1, flags.seed);
+  }
+  log.add({Notice::Severity::warning,
+           {},
+           fmt::format("{} of {} samples were not finite or were negative, and were left out{}",
+                       result.bad_samples, result.samples, replay)});
+}
+
+/// File names and arguments need not be UTF-8, which JSON is.
+std::string to_text(const nlohmann::ordered_json& json) {
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+void write_pictures(const RenderRequest& request, const Image& picture, const Metadata& metadata) {
+  for (const auto& path : request.flags.outputs) {
+    if (is_display_file(path)) {
+      Metadata with_view = metadata;
+      with_view["vernier:exposure"] = fmt::format("{}", request.display.exposure);
+      with_view["vernier:view"] = request.display.view;
+      write_image8(path, to_display(picture, request.display), with_view);
+    } else {
+      write_exr(path, picture, {"R", "G", "B"}, metadata);
+    }
+  }
+}
+
+/// The scene to render, and what the report says of it.
+SceneDescription load_scene(const RenderRequest& request, RenderReport& report) {
+  const RenderFlags& flags = request.flags;
+  SceneDescription description = import_scene(flags.scene, {flags.strict});
+  if (request.environment) description.environment = request.environment;
+  report.scene_file = flags.scene;
+  report.scene_hash = description.hash;
+  report.counts = count(description);
+  report.accelerator = flags.accelerator.empty() ? accelerators().front().name : flags.accelerator;
+  return description;
+}
+
+ExitCode run_render(const RenderFlags& flags, const std::string& command_line) {
+  if (print_requested_list(flags)) return ExitCode::done;
+  const ThreadLimit threads(flags.threads);
+  Stopwatch watch;
+  const RenderRequest request = check_render_flags(flags);
+  NoticeLog log(flags.quiet);
+  RenderReport report;
+  report.command_line = command_line;
+  report.threads = thread_count();
+  report.options = request.options;
+  SceneDescription description = load_scene(request, report);
+  log.add(description.notices);
+  const auto chosen = choose_camera(description.cameras, flags.camera, log);
+  report.load_seconds = watch.lap();
+  const Scene scene(std::move(description), {flags.accelerator});
+  log.add(scene.notices());
+  report.accelerator_stats = scene.accelerator().stats();
+  report.build_seconds = watch.lap();
+
+  const CameraDescription view = chosen ? *chosen : fit_camera(scene.bounds(), report.options, log);
+  report.camera = view.name;
+  fill_in_size(report.options, view);
+  check_picture_size(report.options);
+  const Camera camera(view, report.options.width, report.options.height);
+  if (flags.verbose) fmt::print(stderr, "{}", scene_lines(report));
+
+  const StopSignals signals;
+  ProgressReporter progress(request.progress, report.options);
+  const RenderResult result = render(scene, camera, *request.integrator, report.options, signals.stop(),
+                                     [&](const RenderProgress& state) { progress.update(state); });
+  progress.finish();
+  warn_of_bad_samples(result, flags, log);
+
+  watch.lap();
+  write_pictures(request, result.film.mean(), image_metadata(report, flags, result));
+  report.output_seconds = watch.lap();
+  if (!flags.stats.empty())
+    write_text_file(flags.stats, to_text(stats_json(report, flags, result, log)) + "\n");
+  if (!flags.quiet) fmt::print("{}\n", summary_line(report, flags, result));
+  return result.reason == StopReason::interrupted ? ExitCode::stopped : ExitCode::done;
+}
+
+}  // namespace
+
+void register_render(Program& program) {
+  CLI::App* command = program.app.add_subcommand("render", "Render a glTF scene to pictures");
+  auto flags = std::make_shared<RenderFlags>();
+  add_render_flags(*command, *flags);
+  command->footer("Example: vernier render scene.glb -o out.exr -o out.png --time 1m");
+  command->callback([&program, flags] {
+    program.run = [&program, flags] { return run_render(*flags, program.command_line); };
+  });
+}
+
+}  // namespace vernier::apps

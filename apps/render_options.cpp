@@ -1,0 +1,257 @@
+#include "apps/render_options.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+
+#include "core/base/error.h"
+#include "core/base/names.h"
+#include "core/base/text_file.h"
+#include "core/image/image_io.h"
+#include "scene/accel/accelerator.h"
+
+namespace vernier::apps {
+namespace {
+
+/// Of a film with one group, and the picture made from it.
+constexpr double film_bytes_per_pixel = 4 * sizeof(double) + 3 * sizeof(float);
+
+/// A number that is finite and at least `least`.
+CLI::Validator finite_number(double least = -std::numeric_limits<double>::max()) {
+  const auto check = [least](std::string& text) {
+    double value = 0;
+    if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value))
+      return fmt::format("'{}' is not a finite number", text);
+    return value < least ? fmt::format("{} is below {}", text, least) : std::string();
+  };
+  return {check, "NUMBER"};
+}
+
+void add_quality_flags(CLI::App& command, RenderFlags& flags) {
+  auto* group = command.add_option_group("Picture and effort");
+  group->add_option("--spp", flags.spp, "samples a pixel (64 unless --time is given)")
+      ->check(CLI::Range(1, 1 << 30))
+      ->type_name("N");
+  group->add_option("--time", flags.time, "stop rendering after this long: 90s, 10m, 1.5h")
+      ->type_name("TIME");
+  group
+      ->add_option("--size,--resolution", flags.size, "of the picture (the camera's shape, 1280 pixels long)")
+      ->type_name("WxH");
+  group->add_option("--crop", flags.crop, "render only this part")->type_name("WxH+X+Y");
+  group->add_option("--camera", flags.camera, "of the scene, by name or number (the first)")
+      ->type_name("NAME|N");
+  group->add_option("--seed", flags.seed, "of the random numbers")->type_name("N")->capture_default_str();
+  group->add_option("-t,--threads,--nthreads", flags.threads, "0: all of the machine's")
+      ->check(CLI::Range(0, 4096))
+      ->type_name("N")
+      ->capture_default_str();
+}
+
+void add_integrator_flags(CLI::App& command, RenderFlags& flags) {
+  auto* group = command.add_option_group("Light transport");
+  IntegratorOptions& options = flags.integrator_options;
+  group->add_option("--integrator", flags.integrator, "how light is computed; 'help' lists them")
+      ->type_name("NAME")
+      ->capture_default_str();
+  group->add_option("--show", flags.show, "raycast: what to show; 'help' lists it")->type_name("NAME");
+  group->add_option("--max-depth", options.max_depth, "path vertices after the camera")
+      ->check(CLI::Range(1, 65536))
+      ->type_name("N")
+      ->capture_default_str();
+  group->add_option("--ambient", options.ambient, "whitted: radiance that reaches everything")
+      ->check(finite_number(0))
+      ->type_name("L")
+      ->capture_default_str();
+  group->add_option("--cutoff", options.cutoff, "whitted: smallest contribution that is still traced")
+      ->check(finite_number(0))
+      ->type_name("X")
+      ->capture_default_str();
+  group->add_option("--accelerator", flags.accelerator, "ray query structure; 'help' lists them")
+      ->type_name("NAME");
+  group->add_option("--env", flags.environment, "latitude-longitude picture of the surroundings (HDR, EXR)")
+      ->type_name("FILE");
+  group->add_option("--env-rotate", flags.environment_rotate, "degrees counter-clockwise seen from above")
+      ->check(finite_number())
+      ->type_name("DEG");
+  group->add_option("--env-scale", flags.environment_scale, "multiplies its radiance")
+      ->check(finite_number(0))
+      ->type_name("S");
+}
+
+void add_output_flags(CLI::App& command, RenderFlags& flags) {
+  auto* group = command.add_option_group("Output");
+  group->add_option("--exposure", flags.display.exposure, "stops, for PNG and JPEG")
+      ->check(finite_number())
+      ->type_name("EV");
+  group->add_option("--view", flags.display.view, "display view for PNG and JPEG; 'help' lists them")
+      ->type_name("NAME");
+  group->add_option("--ocio", flags.display.config, "OpenColorIO config ($OCIO, else a built-in one)")
+      ->type_name("FILE");
+  group->add_option("--stats", flags.stats, "write what was measured as JSON (docs/stats.md)")
+      ->type_name("FILE");
+  group->add_option("--progress", flags.progress, "bar, lines, json or none (bar on a terminal, else lines)")
+      ->type_name("KIND")
+      ->capture_default_str();
+  group->add_flag("-q,--quiet", flags.quiet, "say nothing but errors");
+  group->add_flag("-v,--verbose", flags.verbose, "say more");
+  group->add_flag("--strict", flags.strict, "refuse a scene that is not honoured exactly");
+}
+
+template <typename Table>
+void print_table(const Table& table) {
+  for (const auto& entry : table) fmt::print("{:<12} {}\n", entry.name, entry.description);
+}
+
+ProgressMode parse_progress(const RenderFlags& flags) {
+  struct Entry {
+    std::string_view name;
+    ProgressMode mode;
+  };
+  constexpr Entry table[] = {{"auto", ProgressMode::automatic},
+                             {"bar", ProgressMode::bar},
+                             {"lines", ProgressMode::lines},
+                             {"json", ProgressMode::json},
+                             {"none", ProgressMode::none}};
+  const ProgressMode mode = find_by_name(table, "--progress", flags.progress).mode;
+  return flags.quiet && mode == ProgressMode::automatic ? ProgressMode::none : mode;
+}
+
+std::unique_ptr<Integrator> make_integrator(const RenderFlags& flags) {
+  const IntegratorEntry& entry = find_by_name(integrators(), "integrator", flags.integrator);
+  IntegratorOptions options = flags.integrator_options;
+  if (!flags.show.empty()) {
+    if (entry.name != "raycast") throw Error(ErrorKind::usage, "--show needs --integrator raycast");
+    std::vector<std::string> names(raycast_shows().begin(), raycast_shows().end());
+    if (std::find(names.begin(), names.end(), flags.show) == names.end())
+      throw_unknown_name("--show", flags.show, names);
+    options.show = flags.show;
+  }
+  return entry.make(options);
+}
+
+RenderOptions make_options(const RenderFlags& flags) {
+  RenderOptions options;
+  options.seed = flags.seed;
+  if (!flags.time.empty()) options.time_limit = parse_seconds(flags.time);
+  options.spp = flags.spp.value_or(flags.time.empty() ? 64 : 0);
+  if (!flags.size.empty()) {
+    const PixelSize size = parse_pixel_size(flags.size);
+    options.width = size.width;
+    options.height = size.height;
+  }
+  if (!flags.crop.empty()) {
+    const PixelRect rect = parse_pixel_rect(flags.crop);
+    options.crop = {rect.x, rect.y, rect.width, rect.height};
+  }
+  return options;
+}
+
+bool equal_ignoring_case(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+
+/// raycast's pictures are data: they go to the display unchanged unless a view was asked for.
+DisplayOptions choose_display(const RenderFlags& flags) {
+  DisplayOptions display = flags.display;
+  const std::vector<std::string> views = display_views(display);
+  if (!display.view.empty()) {
+    if (std::find(views.begin(), views.end(), display.view) == views.end())
+      throw_unknown_name("view", display.view, views);
+  } else if (flags.integrator == "raycast") {
+    for (const auto& view : views)
+      if (equal_ignoring_case(view, "raw")) display.view = view;
+  }
+  return display;
+}
+
+std::shared_ptr<const EnvironmentDescription> read_environment(const RenderFlags& flags) {
+  if (flags.environment.empty()) {
+    if (flags.environment_rotate != 0 || flags.environment_scale != 1)
+      throw Error(ErrorKind::usage, "--env-rotate and --env-scale need --env FILE");
+    return nullptr;
+  }
+  auto environment = std::make_shared<EnvironmentDescription>();
+  environment->picture = std::make_shared<const Image>(read_image(flags.environment));
+  environment->rotation = std::remainder(flags.environment_rotate, 360.0f) * pi / 180;
+  environment->scale = flags.environment_scale;
+  return environment;
+}
+
+}  // namespace
+
+void add_render_flags(CLI::App& command, RenderFlags& flags) {
+  command.add_option("SCENE", flags.scene, "glTF 2.0 scene (.gltf, .glb)")->type_name("");
+  command
+      .add_option("-o,--output", flags.outputs,
+                  "picture: .exr (scene-linear), .png or .jpg (for display); may be given more than once")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  add_quality_flags(command, flags);
+  add_integrator_flags(command, flags);
+  add_output_flags(command, flags);
+}
+
+void check_picture_size(const RenderOptions& options) {
+  const Crop& crop = options.crop;
+  if (crop.width > 0 && (crop.width > options.width - crop.x || crop.height > options.height - crop.y))
+    throw Error(ErrorKind::usage,
+                fmt::format("--crop {}x{}+{}+{} reaches beyond the picture of {}x{}", crop.width, crop.height,
+                            crop.x, crop.y, options.width, options.height));
+  const double pixels =
+      crop.width > 0 ? double(crop.width) * crop.height : double(options.width) * options.height;
+  const double bytes = pixels * film_bytes_per_pixel;
+  const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+  if (bytes > memory)
+    throw Error(
+        ErrorKind::memory,
+        fmt::format("a picture of {} pixels needs {} of memory and there are {}; render parts with --crop",
+                    format_count(pixels), format_bytes(bytes), format_bytes(memory)));
+}
+
+bool print_requested_list(const RenderFlags& flags) {
+  if (flags.integrator == "help") {
+    print_table(integrators());
+  } else if (flags.accelerator == "help") {
+    print_table(accelerators());
+  } else if (flags.show == "help") {
+    for (const auto& name : raycast_shows()) fmt::print("{}\n", name);
+  } else if (flags.display.view == "help") {
+    DisplayOptions display = flags.display;
+    display.view.clear();
+    for (const auto& name : display_views(display)) fmt::print("{}\n", name);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+RenderRequest check_render_flags(const RenderFlags& flags) {
+  if (flags.scene.empty())
+    throw Error(ErrorKind::usage, "which scene? Give a .gltf or .glb file; see vernier render --help");
+  if (flags.outputs.empty())
+    throw Error(ErrorKind::usage,
+                "where to? Give -o FILE with .exr, .png or .jpg; see vernier render --help");
+  RenderRequest request;
+  request.flags = flags;
+  request.integrator = make_integrator(flags);
+  if (!flags.accelerator.empty()) find_by_name(accelerators(), "accelerator", flags.accelerator);
+  request.options = make_options(flags);
+  if (request.options.width > 0) check_picture_size(request.options);
+  request.progress = parse_progress(flags);
+  request.display = choose_display(flags);
+  for (const auto& path : flags.outputs) check_writable_image(path);
+  if (!flags.stats.empty()) check_writable_text_file(flags.stats);
+  request.environment = read_environment(flags);
+  return request;
+}
+
+bool is_display_file(const std::string& path) {
+  return !equal_ignoring_case(std::filesystem::path(path).extension().string(), ".exr");
+}
+
+}  // namespace vernier::apps

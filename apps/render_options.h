@@ -1,0 +1,70 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/commands.h"
+#include "core/base/quantities.h"
+#include "core/image/display.h"
+#include "integrators/integrator.h"
+#include "integrators/render.h"
+#include "scene/description.h"
+
+namespace vernier::apps {
+
+enum class ProgressMode { automatic, bar, lines, json, none };
+
+/// The flags of `vernier render`, as typed.
+struct RenderFlags {
+  std::string scene;
+  std::vector<std::string> outputs;
+
+  std::string integrator = "path";
+  std::string show;  ///< empty: not given
+  IntegratorOptions integrator_options;
+  std::string accelerator;
+
+  std::optional<int> spp;
+  std::string time, size, crop;
+  uint64_t seed = 0;
+  unsigned threads = 0;
+
+  std::string camera;
+  std::string environment;
+  float environment_rotate = 0;  ///< degrees
+  float environment_scale = 1;
+
+  DisplayOptions display;
+  std::string progress = "auto";
+  std::string stats;
+  bool quiet = false, verbose = false, strict = false;
+};
+
+/// The flags after everything that can be checked without reading a scene has been checked.
+struct RenderRequest {
+  RenderFlags flags;
+  std::unique_ptr<Integrator> integrator;
+  RenderOptions options;  ///< width 0: not given
+  ProgressMode progress = ProgressMode::automatic;
+  DisplayOptions display;
+  std::shared_ptr<const EnvironmentDescription> environment;  ///< null: the scene's own
+};
+
+/// Declares the flags on `command`.
+void add_render_flags(CLI::App& command, RenderFlags& flags);
+
+/// Prints the list that a flag given as "help" asks for; false when none was.
+bool print_requested_list(const RenderFlags& flags);
+
+/// Checks names, sizes, outputs and reads the environment. Throws Error.
+RenderRequest check_render_flags(const RenderFlags& flags);
+
+/// Whether the crop lies in the picture, and the picture in memory. Throws Error(usage) or Error(memory).
+void check_picture_size(const RenderOptions& options);
+
+/// Whether a file is written as display values (PNG, JPEG) rather than scene-linear ones (EXR). By extension.
+bool is_display_file(const std::string& path);
+
+}  // namespace vernier::apps

@@ -1,0 +1,144 @@
+#include "apps/render_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/machine.h"
+#include "apps/messages.h"
+#include "core/base/quantities.h"
+
+namespace vernier::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+uint64_t total(const RayCounts& rays) { return rays.camera + rays.bounce + rays.shadow; }
+
+double rate(uint64_t count, double seconds) { return seconds > 0 ? double(count) / seconds : 0; }
+
+double samples_per_pixel(const RenderResult& result) {
+  return double(result.samples) / (double(result.film.width()) * result.film.height());
+}
+
+std::string_view name(StopReason reason) {
+  switch (reason) {
+    case StopReason::samples:
+      return "samples";
+    case StopReason::time:
+      return "time";
+    case StopReason::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+std::string crop_text(const Crop& crop) {
+  return fmt::format("{}x{}+{}+{}", crop.width, crop.height, crop.x, crop.y);
+}
+
+Json picture_json(const RenderReport& report, const RenderFlags& flags, const RenderResult& result) {
+  Json picture = {{"width", report.options.width},
+                  {"height", report.options.height},
+                  {"integrator", flags.integrator},
+                  {"camera", report.camera},
+                  {"seed", flags.seed},
+                  {"max_depth", flags.integrator_options.max_depth},
+                  {"samples", result.samples},
+                  {"samples_per_pixel", samples_per_pixel(result)},
+                  {"stopped_by", name(result.reason)},
+                  {"files", flags.outputs}};
+  if (report.options.crop.width > 0) picture["crop"] = crop_text(report.options.crop);
+  return picture;
+}
+
+Json rays_json(const RenderResult& result) {
+  return {{"camera", result.rays.camera},
+          {"bounce", result.rays.bounce},
+          {"shadow", result.rays.shadow},
+          {"total", total(result.rays)},
+          {"per_second", rate(total(result.rays), result.seconds)},
+          {"samples_per_second", rate(result.samples, result.seconds)}};
+}
+
+Json bad_samples_json(const RenderResult& result) {
+  Json examples = Json::array();
+  for (const BadSample& sample : result.bad_sample_examples)
+    examples.push_back({{"x", sample.x}, {"y", sample.y}, {"index", sample.index}});
+  return {{"count", result.bad_samples}, {"examples", examples}};
+}
+
+}  // namespace
+
+Metadata image_metadata(const RenderReport& report, const RenderFlags& flags, const RenderResult& result) {
+  Metadata metadata = {
+      {"Software", "vernier " VERNIER_VERSION},
+      {"vernier:command", report.command_line},
+      {"vernier:scene", report.scene_file},
+      {"vernier:sceneHash", report.scene_hash},
+      {"vernier:camera", report.camera},
+      {"vernier:integrator", flags.integrator},
+      {"vernier:accelerator", report.accelerator},
+      {"vernier:seed", fmt::format("{}", flags.seed)},
+      {"vernier:samples", fmt::format("{}", result.samples)},
+      {"vernier:samplesPerPixel", fmt::format("{}", samples_per_pixel(result))},
+      {"vernier:seconds", fmt::format("{:.3f}", result.seconds)},
+      {"vernier:stoppedBy", std::string(name(result.reason))},
+      {"vernier:size", fmt::format("{}x{}", report.options.width, report.options.height)},
+  };
+  if (report.options.crop.width > 0) metadata["vernier:crop"] = crop_text(report.options.crop);
+  return metadata;
+}
+
+Json stats_json(const RenderReport& report, const RenderFlags& flags, const RenderResult& result,
+                const NoticeLog& log) {
+  return {{"vernier", VERNIER_VERSION},
+          {"command", report.command_line},
+          {"scene",
+           {{"file", report.scene_file}, {"hash", report.scene_hash}, {"counts", to_json(report.counts)}}},
+          {"picture", picture_json(report, flags, result)},
+          {"seconds",
+           {{"load", report.load_seconds},
+            {"build", report.build_seconds},
+            {"render", result.seconds},
+            {"output", report.output_seconds},
+            {"cpu", cpu_seconds()}}},
+          {"rays", rays_json(result)},
+          {"accelerator",
+           {{"name", report.accelerator},
+            {"build_seconds", report.accelerator_stats.build_seconds},
+            {"bytes", report.accelerator_stats.bytes}}},
+          {"peak_memory_bytes", peak_memory_bytes()},
+          {"bad_samples", bad_samples_json(result)},
+          {"notices", to_json(log.notices())},
+          {"machine", {{"cpu", cpu_name()}, {"threads", report.threads}}},
+          {"built_with", build_versions()}};
+}
+
+std::string scene_lines(const RenderReport& report) {
+  const SceneCounts& counts = report.counts;
+  return fmt::format(
+             "scene: {} triangles in {} meshes, {} in {} instances; {} materials, {} textures ({}), {} "
+             "punctual "
+             "lights, {} emissive triangles\n",
+             counts.triangles, counts.meshes, counts.instanced_triangles, counts.instances, counts.materials,
+             counts.textures, format_bytes(double(counts.texture_bytes)), counts.punctual_lights,
+             counts.emissive_triangles) +
+         fmt::format("accelerator: {}, {}, built in {}\n", report.accelerator,
+                     format_bytes(double(report.accelerator_stats.bytes)),
+                     format_seconds(report.accelerator_stats.build_seconds)) +
+         fmt::format("rendering {}x{} on {} threads, {} of memory in use at most so far\n",
+                     report.options.width, report.options.height, report.threads,
+                     format_bytes(double(peak_memory_bytes())));
+}
+
+std::string summary_line(const RenderReport& report, const RenderFlags& flags, const RenderResult& result) {
+  return fmt::format("wrote {}: {}x{}, {:.4g} spp, load {}, build {}, render {}, {} rays/s",
+                     fmt::join(flags.outputs, ", "), result.film.width(), result.film.height(),
+                     samples_per_pixel(result), format_seconds(report.load_seconds),
+                     format_seconds(report.build_seconds), format_seconds(result.seconds),
+                     format_count(rate(total(result.rays), result.seconds)));
+}
+
+}  // namespace vernier::apps

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "apps/notice_log.h"
+#include "apps/render_options.h"
+#include "apps/scene_summary.h"
+#include "core/image/image_io.h"
+#include "integrators/render.h"
+#include "scene/accel/accelerator.h"
+
+namespace vernier::apps {
+
+/// What is known of a render when its image is written.
+struct RenderReport {
+  std::string command_line;
+  std::string scene_file, scene_hash, camera, accelerator;
+  SceneCounts counts;
+  AcceleratorStats accelerator_stats;
+  RenderOptions options;
+  unsigned threads = 0;
+  double load_seconds = 0;    ///< reading the scene and the environment
+  double build_seconds = 0;   ///< from the description to a scene that answers rays
+  double output_seconds = 0;  ///< display transform, encoding, writing
+};
+
+/// Image header entries that say how the picture came about.
+Metadata image_metadata(const RenderReport& report, const RenderFlags& flags, const RenderResult& result);
+
+/// The content of the --stats file; docs/stats.md documents every field.
+nlohmann::ordered_json stats_json(const RenderReport& report, const RenderFlags& flags,
+                                  const RenderResult& result, const NoticeLog& log);
+
+/// What --verbose says before rendering.
+std::string scene_lines(const RenderReport& report);
+
+/// "wrote out.exr: 1280x720, 64 spp, load 310 ms, build 100 ms, render 12.3 s, 5.10 M rays/s"
+std::string summary_line(const RenderReport& report, const RenderFlags& flags, const RenderResult& result);
+
+}  // namespace vernier::apps

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <atomic>
+#include <csignal>
+
+namespace vernier::apps {
+
+/// While it lives, the first SIGINT or SIGTERM only raises a flag; a second one ends the process at once. A
+/// signal that was ignored at the start (as in background jobs of a shell script) stays ignored.
+class StopSignals {
+ public:
+  StopSignals();
+  ~StopSignals();
+  StopSignals(const StopSignals&) = delete;
+  StopSignals& operator=(const StopSignals&) = delete;
+
+  const std::atomic<bool>& stop() const;
+
+ private:
+  struct sigaction old_interrupt_ {};
+  struct sigaction old_terminate_ {};
+};
+
+}  // namespace vernier::apps
