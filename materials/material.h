@@ -44,6 +44,8 @@ class Material {
   bool is_unlit() const { return description_.unlit; }
   bool is_opaque() const { return description_.alpha_mode == AlphaMode::opaque; }
   bool double_sided() const { return description_.double_sided; }
+  /// Light may pass through the surface.
+  bool transmits() const { return description_.transmission > 0; }
   /// Encloses a volume: its surface bends light and the inside absorbs.
   bool is_volume_boundary() const { return description_.thickness > 0 && description_.transmission > 0; }
   /// Absorption coefficient of that volume, per metre (KHR_materials_volume: -ln(colour) / distance).

@@ -139,8 +139,13 @@ Shading Scene::shade(const SurfacePoint& point, const Vec3f& wo) const {
   return {Frame::from_normal(normal), ng, wo, material.bsdf(attributes, point.front)};
 }
 
+LightReceiver Scene::receiver(const SurfacePoint& point) const {
+  if (material(point).transmits()) return {point.position, {0, 0, 0}};
+  return {point.position, point.front ? point.ng : -point.ng};
+}
+
 std::optional<LightSample> Scene::sample_light(const SurfacePoint& from, float u, const Vec2f& v) const {
-  const auto [light, prob] = lights_.choose(from, u);
+  const auto [light, prob] = lights_.choose(receiver(from), u);
   if (!light) return std::nullopt;
   auto sample = light->sample(from, v);
   if (!sample) return std::nullopt;
@@ -167,7 +172,7 @@ LightEval Scene::emitted(const SurfacePoint* from, const Ray& ray, const Surface
     if (!from) return {environment_->radiance(ray.direction), 0};
   }
   LightEval light = lights_[size_t(index)].eval(*from, ray.direction, hit);
-  light.pdf *= lights_.prob(*from, size_t(index));
+  light.pdf *= lights_.prob(receiver(*from), size_t(index));
   return light;
 }
 

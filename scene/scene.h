@@ -57,6 +57,7 @@ class Scene {
   const std::vector<Notice>& notices() const { return notices_; }
 
  private:
+  LightReceiver receiver(const SurfacePoint& point) const;
   void compile_materials(const std::vector<MaterialDescription>& descriptions);
   void build_accelerator(const std::string& name);
   void collect_lights(const SceneDescription& description);

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "scene/bounds.h"
+#include "scene/lights/light_bounds.h"
 #include "scene/surface_point.h"
 
 namespace vernier {
@@ -37,6 +37,9 @@ class Light {
   /// Emitted power in watts, as far as needed to choose between lights; positive if the light contributes
   /// anywhere. `scene`: bounds that lights at infinity shine on.
   virtual float power(const Bounds& scene) const = 0;
+
+  /// Where it is and what it shines on; empty for a light at infinity.
+  virtual std::optional<LightBounds> bounds() const { return std::nullopt; }
 
   /// Whether its samples are delta ones, always.
   virtual bool is_delta() const { return false; }

@@ -5,10 +5,12 @@
 
 #include "core/sampling/distribution.h"
 #include "scene/lights/light.h"
+#include "scene/lights/light_tree.h"
 
 namespace vernier {
 
-/// All lights of a scene, and the choice among them in proportion to power.
+/// All lights of a scene, and the choice among them: a few in proportion to power, many by a tree that knows
+/// where they are.
 class LightSet {
  public:
   LightSet() = default;
@@ -19,10 +21,10 @@ class LightSet {
     const Light* light = nullptr;
     float prob = 0;
   };
-  /// A light that may shine on `from`; null when there is none. u in [0, 1).
-  Choice choose(const SurfacePoint& from, float u) const;
-  /// Probability that choose() picks light i at `from`.
-  float prob(const SurfacePoint& from, size_t i) const;
+  /// A light that may shine on the receiver; null when there is none. u in [0, 1).
+  Choice choose(const LightReceiver& receiver, float u) const;
+  /// Probability that choose() picks light i.
+  float prob(const LightReceiver& receiver, size_t i) const;
 
   /// Those that no ray meets: punctual ones.
   const std::vector<const Light*>& delta_lights() const { return delta_lights_; }
@@ -31,9 +33,16 @@ class LightSet {
   const Light& operator[](size_t i) const { return *lights_[i]; }
 
  private:
+  /// Below this many lights with a place the tree costs more than it saves.
+  static constexpr size_t tree_threshold = 8;
+
   std::vector<std::unique_ptr<Light>> lights_;
   std::vector<const Light*> delta_lights_;
+  /// By power; with a tree, over the lights at infinity and, last, the tree as a whole.
   AliasTable by_power_;
+  std::vector<uint32_t> listed_;  ///< lights of by_power_
+  std::vector<int32_t> place_;    ///< by light: index in by_power_, or -1 when it is in the tree
+  std::optional<LightTree> tree_;
 };
 
 }  // namespace vernier

@@ -61,4 +61,18 @@ float PunctualLight::power(const Bounds& scene) const {
   return 0;
 }
 
+std::optional<LightBounds> PunctualLight::bounds() const {
+  if (kind_ == Kind::directional) return std::nullopt;
+  LightBounds bounds;
+  bounds.box.add(position_);
+  bounds.axis = direction_;
+  bounds.power = power({});
+  if (kind_ == Kind::spot) {
+    bounds.cos_emission = cos_outer_;
+  } else {
+    bounds.cos_spread = -1;
+  }
+  return bounds;
+}
+
 }  // namespace vernier

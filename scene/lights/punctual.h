@@ -13,6 +13,7 @@ class PunctualLight : public Light {
   std::optional<LightSample> sample(const SurfacePoint& from, const Vec2f& u) const override;
   LightEval eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const override;
   float power(const Bounds& scene) const override;
+  std::optional<LightBounds> bounds() const override;
   bool is_delta() const override { return true; }
 
  private:

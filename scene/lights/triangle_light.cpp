@@ -9,6 +9,7 @@ TriangleLight::TriangleLight(const SceneGeometry& geometry, const Material& mate
     : geometry_(&geometry), material_(&material), instance_(instance), primitive_(primitive) {
   const auto [a, b, c] = geometry.triangle(instance, primitive);
   area_ = length(cross(b - a, c - a)) / 2;
+  power_ = mean_power();
 }
 
 Rgb TriangleLight::emission(const SurfacePoint& point, bool front) const {
@@ -37,7 +38,16 @@ LightEval TriangleLight::eval(const SurfacePoint& from, const Vec3f& wi, const S
   return {radiance, distance2 / (cosine * area_)};
 }
 
-float TriangleLight::power(const Bounds& /*scene*/) const {
+std::optional<LightBounds> TriangleLight::bounds() const {
+  LightBounds bounds;
+  for (const Vec3f& corner : geometry_->triangle(instance_, primitive_)) bounds.box.add(corner);
+  bounds.axis = geometry_->surface_point(instance_, primitive_, {0, 0}).ng;
+  bounds.power = power_;
+  bounds.two_sided = material_->double_sided();
+  return bounds;
+}
+
+float TriangleLight::mean_power() const {
   // Mean emission over a fixed lattice: fine enough to find a lit patch of a few percent of the triangle; one
   // that it misses is no light, and BSDF sampling alone finds it.
   constexpr int steps = 12;

@@ -13,15 +13,17 @@ class TriangleLight : public Light {
 
   std::optional<LightSample> sample(const SurfacePoint& from, const Vec2f& u) const override;
   LightEval eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const override;
-  float power(const Bounds& scene) const override;
+  float power(const Bounds& /*scene*/) const override { return power_; }
+  std::optional<LightBounds> bounds() const override;
 
  private:
   Rgb emission(const SurfacePoint& point, bool front) const;
+  float mean_power() const;
 
   const SceneGeometry* geometry_;
   const Material* material_;
   uint32_t instance_, primitive_;
-  float area_;
+  float area_, power_;
 };
 
 }  // namespace vernier
