@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
 #include "core/image/image.h"
 
@@ -11,15 +12,15 @@ enum class WrapMode { repeat, mirrored_repeat, clamp_to_edge };
 enum class FilterMode { nearest, linear };
 enum class TexelEncoding { linear, srgb };
 
-/// Eight-bit picture read at (u, v): u to the right, v downwards, (0,0) the outer corner of the first texel, as
-/// glTF has it. Pixels are shared between textures of one image and stay in 8 bits.
+/// Eight-bit picture read at (u, v): u to the right, v downwards, (0,0) the outer corner of the first texel,
+/// as glTF has it. Pixels are shared between textures of one image and stay in 8 bits.
 class Texture {
  public:
   Texture(std::shared_ptr<const Image8> image, WrapMode wrap_s, WrapMode wrap_t, FilterMode filter)
       : image_(std::move(image)), wrap_s_(wrap_s), wrap_t_(wrap_t), filter_(filter) {}
 
-  /// RGBA in [0,1]; missing channels: grey is repeated to RGB, alpha is 1. With `srgb`, RGB texels are decoded to
-  /// linear light before filtering; alpha never is. Not finite coordinates read as 0.
+  /// RGBA in [0,1]; missing channels: grey is repeated to RGB, alpha is 1. With `srgb`, RGB texels are
+  /// decoded to linear light before filtering; alpha never is. Not finite coordinates read as 0.
   Vec4f sample(const Vec2f& uv, TexelEncoding encoding) const;
 
   const Image8& image() const { return *image_; }
@@ -28,8 +29,6 @@ class Texture {
   FilterMode filter() const { return filter_; }
 
  private:
-  Vec4f texel(int x, int y, TexelEncoding encoding) const;
-
   std::shared_ptr<const Image8> image_;
   WrapMode wrap_s_, wrap_t_;
   FilterMode filter_;

@@ -1,0 +1,107 @@
+#include "materials/texture.h"
+
+#include <array>
+
+namespace vernier {
+namespace {
+
+/// Values of the 256 codes of a channel, by TexelEncoding.
+struct CodeTables {
+  std::array<float, 256> linear, srgb;
+
+  CodeTables() {
+    for (int code = 0; code < 256; ++code) {
+      linear[size_t(code)] = float(code) / 255;
+      srgb[size_t(code)] = srgb_to_linear(float(code) / 255);
+    }
+  }
+};
+const CodeTables tables;
+
+/// Brings a coordinate into [0, 1]; anything not finite becomes 0.
+float wrapped(float coordinate, WrapMode mode) {
+  if (!std::isfinite(coordinate)) return 0;
+  switch (mode) {
+    case WrapMode::repeat:
+      return coordinate - std::floor(coordinate);
+    case WrapMode::mirrored_repeat: {
+      const float period = coordinate - 2 * std::floor(0.5f * coordinate);
+      return period > 1 ? 2 - period : period;
+    }
+    default:
+      return std::clamp(coordinate, 0.f, 1.f);
+  }
+}
+
+/// Two neighbouring texels along one axis and the weight of the second.
+struct Neighbours {
+  int first, second;
+  float weight;
+};
+
+Neighbours neighbours(float coordinate, int size, WrapMode mode) {
+  const float position = wrapped(coordinate, mode) * float(size) - 0.5f;
+  const float first = std::floor(position);
+  Neighbours n{int(first), int(first) + 1, position - first};
+  // Past an edge a mirrored texture shows the edge texel again, as a clamped one does.
+  const bool repeats = mode == WrapMode::repeat;
+  if (n.first < 0) n.first = repeats ? size - 1 : 0;
+  if (n.second >= size) n.second = repeats ? 0 : size - 1;
+  return n;
+}
+
+int nearest(float coordinate, int size, WrapMode mode) {
+  return std::min(int(wrapped(coordinate, mode) * float(size)), size - 1);
+}
+
+template <int channels>
+Vec4f decoded(const uint8_t* texel, const float* table) {
+  if constexpr (channels <= 2) {
+    const float grey = table[texel[0]];
+    return {grey, grey, grey, channels == 2 ? tables.linear[texel[channels - 1]] : 1.f};
+  } else {
+    return {table[texel[0]], table[texel[1]], table[texel[2]],
+            channels == 4 ? tables.linear[texel[channels - 1]] : 1.f};
+  }
+}
+
+template <int channels>
+Vec4f bilinear(const Image8& image, const Neighbours& x, const Neighbours& y, const float* table) {
+  const size_t row = size_t(image.width) * channels;
+  const uint8_t* upper = image.values.data() + size_t(y.first) * row;
+  const uint8_t* lower = image.values.data() + size_t(y.second) * row;
+  const size_t left = size_t(x.first) * channels, right = size_t(x.second) * channels;
+  const Vec4f top = decoded<channels>(upper + left, table) * (1 - x.weight) +
+                    decoded<channels>(upper + right, table) * x.weight;
+  const Vec4f bottom = decoded<channels>(lower + left, table) * (1 - x.weight) +
+                       decoded<channels>(lower + right, table) * x.weight;
+  return top * (1 - y.weight) + bottom * y.weight;
+}
+
+}  // namespace
+
+Vec4f Texture::sample(const Vec2f& uv, TexelEncoding encoding) const {
+  const Image8& image = *image_;
+  const float* table = (encoding == TexelEncoding::srgb ? tables.srgb : tables.linear).data();
+  Neighbours x, y;
+  if (filter_ == FilterMode::nearest) {
+    x.first = x.second = nearest(uv.x, image.width, wrap_s_);
+    y.first = y.second = nearest(uv.y, image.height, wrap_t_);
+    x.weight = y.weight = 0;
+  } else {
+    x = neighbours(uv.x, image.width, wrap_s_);
+    y = neighbours(uv.y, image.height, wrap_t_);
+  }
+  switch (image.channels) {
+    case 1:
+      return bilinear<1>(image, x, y, table);
+    case 2:
+      return bilinear<2>(image, x, y, table);
+    case 3:
+      return bilinear<3>(image, x, y, table);
+    default:
+      return bilinear<4>(image, x, y, table);
+  }
+}
+
+}  // namespace vernier

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/import/asset_files.h"
+
+// Only sources under scene/import include this header, since it brings tinygltf in.
+
+namespace vernier {
+
+/// Where an image's file is: a URI, or a buffer view.
+struct ImageSource {
+  std::string uri;  ///< empty: in `view`
+  int view = -1;
+};
+
+/// A glTF file, parsed and checked against the schema: every type is right, every index in range. tinygltf is
+/// given the JSON without buffers and images, and so never opens a file itself: `model.buffers` and
+/// `model.images` are empty.
+class Document {
+ public:
+  /// Reads the scene file and its buffers. Throws Error(input).
+  explicit Document(const std::string& path);
+
+  const AssetFiles& files() const { return files_; }
+  const tinygltf::Model& model() const { return model_; }
+  const std::vector<ImageSource>& images() const { return images_; }
+
+  /// Bytes of a buffer view.
+  std::span<const uint8_t> view(int index) const { return views_[size_t(index)]; }
+
+  /// Fingerprints of the scene file and the buffers read, in order.
+  const std::vector<std::string>& fingerprints() const { return fingerprints_; }
+
+  /// Throws Error(input) about this file; `place` is a JSON pointer.
+  [[noreturn]] void fail(const std::string& place, const std::string& problem) const;
+
+ private:
+  void read_buffers(const nlohmann::json& json, std::span<const uint8_t> binary_chunk);
+  void read_image_sources(const nlohmann::json& json);
+  void parse_model(nlohmann::json& json);
+  void locate_views();
+
+  AssetFiles files_;
+  tinygltf::Model model_;
+  std::vector<Bytes> storage_;
+  std::vector<std::span<const uint8_t>> buffers_, views_;
+  std::vector<ImageSource> images_;
+  std::vector<std::string> fingerprints_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,111 @@
+#include "scene/import/features.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace vernier {
+namespace {
+
+using Status = FeatureUse::Status;
+
+struct ExtensionEntry {
+  std::string_view name;
+  Status status;
+  std::string_view note;
+};
+
+/// What the renderer makes of each extension. One that is not here is not known at all.
+constexpr ExtensionEntry extensions[] = {
+    {"EXT_texture_webp", Status::exact, ""},
+    {"KHR_lights_punctual", Status::exact, "candela and lux are taken as W/sr and W/m^2"},
+    {"KHR_materials_emissive_strength", Status::exact, "factor times strength is radiance in W/(m^2 sr)"},
+    {"KHR_materials_ior", Status::exact, ""},
+    {"KHR_materials_specular", Status::exact, ""},
+    {"KHR_materials_transmission", Status::exact, ""},
+    {"KHR_materials_unlit", Status::exact, ""},
+    {"KHR_materials_volume", Status::exact,
+     "the mesh is the boundary, so thickness only tells volumes from thin walls"},
+    {"KHR_mesh_quantization", Status::exact, ""},
+    {"KHR_texture_transform", Status::exact, ""},
+    {"KHR_xmp_json_ld", Status::exact, "metadata, nothing to render"},
+
+    {"KHR_materials_anisotropy", Status::ignored, "highlights are isotropic"},
+    {"KHR_materials_clearcoat", Status::ignored, "the base layer is rendered without its coat"},
+    {"KHR_materials_diffuse_transmission", Status::ignored, "rendered as opaque"},
+    {"KHR_materials_dispersion", Status::ignored, "one index of refraction for all colours"},
+    {"KHR_materials_iridescence", Status::ignored, "rendered without the thin film"},
+    {"KHR_materials_sheen", Status::ignored, "rendered without the sheen layer"},
+    {"KHR_materials_pbrSpecularGlossiness", Status::ignored,
+     "archived; the metallic-roughness values are used"},
+    {"KHR_texture_basisu", Status::ignored, "the texture's PNG or JPEG source is used when it has one"},
+};
+
+struct CoreEntry {
+  std::string_view name;
+  Status status;
+  std::string_view note;
+  bool (*used)(const tinygltf::Model&);
+};
+
+bool uses_occlusion(const tinygltf::Model& model) {
+  return std::any_of(model.materials.begin(), model.materials.end(),
+                     [](const auto& material) { return material.occlusionTexture.index >= 0; });
+}
+
+bool uses_morph_targets(const tinygltf::Model& model) {
+  for (const auto& mesh : model.meshes)
+    for (const auto& primitive : mesh.primitives)
+      if (!primitive.targets.empty()) return true;
+  return false;
+}
+
+bool uses_mipmaps(const tinygltf::Model& model) {
+  return std::any_of(model.samplers.begin(), model.samplers.end(),
+                     [](const auto& sampler) { return sampler.minFilter >= 9984; });
+}
+
+constexpr CoreEntry core_features[] = {
+    {"animations", Status::ignored, "nodes stay where the file puts them",
+     [](const tinygltf::Model& model) { return !model.animations.empty(); }},
+    {"material.occlusionTexture", Status::ignored,
+     "light transport computes occlusion itself (glTF 2.0, 3.9.3)", uses_occlusion},
+    {"mesh.primitive.targets", Status::ignored, "morph targets have no effect", uses_morph_targets},
+    {"sampler.minFilter mipmaps", Status::exact, "the samples of a pixel average the texels they meet",
+     uses_mipmaps},
+    {"skins", Status::ignored, "meshes stay in their bind pose",
+     [](const tinygltf::Model& model) { return !model.skins.empty(); }},
+};
+
+FeatureUse extension_use(const std::string& name) {
+  for (const auto& entry : extensions)
+    if (entry.name == name) return {name, entry.status, std::string(entry.note)};
+  return {name, Status::ignored, "this extension is not known"};
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+}  // namespace
+
+std::vector<FeatureUse> report_features(const Document& document) {
+  const auto& model = document.model();
+  std::vector<FeatureUse> features;
+  for (const auto& name : model.extensionsUsed) features.push_back(extension_use(name));
+  for (size_t i = 0; i < model.extensionsRequired.size(); ++i) {
+    const std::string& name = model.extensionsRequired[i];
+    const FeatureUse use = extension_use(name);
+    if (use.status == Status::ignored)
+      document.fail(fmt::format("/extensionsRequired/{}", i),
+                    fmt::format("the file requires {}, which is not supported: {}", name, use.note));
+    if (!contains(model.extensionsUsed, name)) features.push_back(use);
+  }
+  for (const auto& entry : core_features)
+    if (entry.used(model))
+      features.push_back({std::string(entry.name), entry.status, std::string(entry.note)});
+  return features;
+}
+
+}  // namespace vernier

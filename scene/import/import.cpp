@@ -1,0 +1,114 @@
+#include "scene/import/import.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene/import/cameras_lights.h"
+#include "scene/import/features.h"
+#include "scene/import/instances.h"
+#include "scene/import/materials.h"
+#include "scene/import/meshes.h"
+#include "scene/import/nodes.h"
+#include "scene/import/textures.h"
+
+namespace vernier {
+namespace {
+
+/// Keeps the materials that instances use, in the file's order, and renumbers the instances.
+void keep_used_materials(std::vector<MaterialDescription> all, SceneDescription& scene) {
+  std::vector<uint32_t> renumbered(all.size(), 0);
+  for (const auto& instance : scene.instances) renumbered[instance.material] = 1;
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (!renumbered[i]) continue;
+    renumbered[i] = uint32_t(scene.materials.size());
+    scene.materials.push_back(std::move(all[i]));
+  }
+  for (auto& instance : scene.instances) instance.material = renumbered[instance.material];
+}
+
+/// A texture that could not be read is magenta as a base colour. Elsewhere magenta would stand for a normal
+/// or a roughness, so the slot keeps its factor alone, and a surface that glows by texture does not glow.
+void leave_out_unreadable(MaterialDescription& material, const std::vector<bool>& unreadable) {
+  const auto is_unreadable = [&](const TextureUse& use) { return use && unreadable[size_t(use.texture)]; };
+  if (is_unreadable(material.emissive_texture)) material.emissive = Rgb(0, 0, 0);
+  for_each_texture(material, [&](TextureUse& use) {
+    if (&use != &material.base_color_texture && is_unreadable(use)) use = {};
+  });
+}
+
+/// Decodes the textures that the scene's materials use and renumbers their uses.
+void add_textures(const Document& document, SceneDescription& scene, std::vector<std::string>& fingerprints) {
+  std::vector<int> wanted;
+  for (const auto& material : scene.materials)
+    for_each_texture(material, [&](const TextureUse& use) {
+      if (use) wanted.push_back(use.texture);
+    });
+  std::sort(wanted.begin(), wanted.end());
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+
+  DecodedTextures decoded = read_textures(document, wanted, scene.notices);
+  scene.textures = std::move(decoded.textures);
+  fingerprints.insert(fingerprints.end(), decoded.fingerprints.begin(), decoded.fingerprints.end());
+  for (auto& material : scene.materials) {
+    for_each_texture(material, [&](TextureUse& use) {
+      if (use)
+        use.texture = int(std::lower_bound(wanted.begin(), wanted.end(), use.texture) - wanted.begin());
+    });
+    leave_out_unreadable(material, decoded.unreadable);
+  }
+}
+
+void add_feature_notices(SceneDescription& scene) {
+  for (const auto& feature : scene.features)
+    if (feature.status != FeatureUse::Status::exact)
+      scene.notices.push_back(
+          {Notice::Severity::warning, "",
+           fmt::format("{} is {}: {}", feature.name,
+                       feature.status == FeatureUse::Status::ignored ? "ignored" : "approximated",
+                       feature.note)});
+}
+
+std::string combined_fingerprint(const std::vector<std::string>& parts) {
+  const std::string all = fmt::format("{}", fmt::join(parts, ""));
+  return fingerprint({reinterpret_cast<const uint8_t*>(all.data()), all.size()});
+}
+
+}  // namespace
+
+SceneDescription import_scene(const std::string& path, const ImportOptions& options) {
+  const Document document(path);
+  SceneDescription scene;
+  scene.source = path;
+  scene.features = report_features(document);
+  add_feature_notices(scene);
+
+  std::vector<Imath::M44d> locals;
+  for (const auto& node : document.model().nodes) locals.push_back(local_matrix(node));
+  const NodePlaces places = place_nodes(document, locals);
+  add_cameras_and_lights(document, places, scene);
+
+  std::vector<MaterialDescription> materials = read_materials(document, scene.notices);
+  Placement placement = place_meshes(document, places, materials);
+  scene.instances = std::move(placement.instances);
+  if (placement.without_surface)
+    scene.notices.push_back(
+        {Notice::Severity::warning, "/meshes",
+         fmt::format("{} primitives have no surface (points, lines or no positions) and are left out",
+                     placement.without_surface)});
+  MeshRepairs repairs;
+  scene.meshes = read_meshes(document, placement.meshes, repairs);
+  for (auto& notice : repairs.notices()) scene.notices.push_back(std::move(notice));
+
+  std::vector<std::string> fingerprints = document.fingerprints();
+  keep_used_materials(std::move(materials), scene);
+  add_textures(document, scene, fingerprints);
+  scene.hash = combined_fingerprint(fingerprints);
+
+  if (options.strict)
+    for (const auto& notice : scene.notices)
+      if (notice.severity == Notice::Severity::warning) document.fail(notice.place, "strict: " + notice.text);
+  return scene;
+}
+
+}  // namespace vernier

@@ -1,0 +1,228 @@
+#include "scene/import/materials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vernier {
+namespace {
+
+using tinygltf::Value;
+
+/// The members of a JSON object that tinygltf keeps as it is; a missing object has none. Types are those of
+/// the schema already.
+class Members {
+ public:
+  explicit Members(const Value* object) : object_(object) {}
+  Members(const tinygltf::ExtensionMap& extensions, const std::string& name) {
+    const auto found = extensions.find(name);
+    if (found != extensions.end()) object_ = &found->second;
+  }
+
+  bool exist() const { return object_ != nullptr; }
+  const Value* find(const std::string& name) const {
+    return object_ && object_->Has(name) ? &object_->Get(name) : nullptr;
+  }
+  float number(const std::string& name, float otherwise) const {
+    const Value* value = find(name);
+    return value ? float(value->GetNumberAsDouble()) : otherwise;
+  }
+  Vec2f pair(const std::string& name, const Vec2f& otherwise) const {
+    const Value* value = find(name);
+    return value ? Vec2f(component(*value, 0), component(*value, 1)) : otherwise;
+  }
+  Rgb color(const std::string& name, const Rgb& otherwise) const {
+    const Value* value = find(name);
+    return value ? Rgb(component(*value, 0), component(*value, 1), component(*value, 2)) : otherwise;
+  }
+
+ private:
+  static float component(const Value& value, size_t i) { return float(value.Get(i).GetNumberAsDouble()); }
+
+  const Value* object_ = nullptr;
+};
+
+class MaterialReader {
+ public:
+  MaterialReader(const Document& document, size_t index, std::vector<Notice>& notices)
+      : source_(document.model().materials[index]),
+        place_(fmt::format("/materials/{}", index)),
+        notices_(notices) {}
+
+  MaterialDescription read() {
+    result_.name = source_.name;
+    read_metallic_roughness();
+    read_emission();
+    read_specular();
+    read_volume();
+    read_coats();
+    read_films();
+    return result_;
+  }
+
+ private:
+  void read_metallic_roughness() {
+    const auto& pbr = source_.pbrMetallicRoughness;
+    for (int i = 0; i < 4; ++i)
+      result_.base_color[i] = unit(float(pbr.baseColorFactor[size_t(i)]), "baseColorFactor");
+    result_.metallic = unit(float(pbr.metallicFactor), "metallicFactor");
+    result_.roughness = unit(float(pbr.roughnessFactor), "roughnessFactor");
+    result_.base_color_texture = use_of(pbr.baseColorTexture);
+    result_.metallic_roughness_texture = use_of(pbr.metallicRoughnessTexture);
+    result_.normal_texture = use_of(source_.normalTexture);
+    result_.normal_scale = float(source_.normalTexture.scale);
+    result_.double_sided = source_.doubleSided;
+    result_.alpha_cutoff = float(source_.alphaCutoff);
+    if (source_.alphaMode == "MASK") result_.alpha_mode = AlphaMode::mask;
+    if (source_.alphaMode == "BLEND") result_.alpha_mode = AlphaMode::blend;
+    result_.unlit = source_.extensions.count("KHR_materials_unlit") > 0;
+  }
+
+  void read_emission() {
+    const float strength = extension("KHR_materials_emissive_strength").number("emissiveStrength", 1);
+    const auto& factor = source_.emissiveFactor;
+    for (int i = 0; i < 3; ++i)
+      result_.emissive[i] = not_negative(float(factor[size_t(i)]), "emissiveFactor") * strength;
+    result_.emissive_texture = use_of(source_.emissiveTexture);
+  }
+
+  void read_specular() {
+    result_.ior = extension("KHR_materials_ior").number("ior", result_.ior);
+    if (result_.ior != 0 && result_.ior < 1) {
+      clamped("ior");
+      result_.ior = 1;
+    }
+    const Members specular = extension("KHR_materials_specular");
+    result_.specular = unit(specular.number("specularFactor", 1), "specularFactor");
+    result_.specular_texture = texture(specular, "specularTexture");
+    result_.specular_color =
+        not_negative(specular.color("specularColorFactor", result_.specular_color), "specularColorFactor");
+    result_.specular_color_texture = texture(specular, "specularColorTexture");
+  }
+
+  void read_volume() {
+    const Members transmission = extension("KHR_materials_transmission");
+    result_.transmission = unit(transmission.number("transmissionFactor", 0), "transmissionFactor");
+    result_.transmission_texture = texture(transmission, "transmissionTexture");
+    const Members volume = extension("KHR_materials_volume");
+    result_.thickness = volume.number("thicknessFactor", 0);
+    result_.attenuation_distance = volume.number("attenuationDistance", result_.attenuation_distance);
+    result_.attenuation_color =
+        unit(volume.color("attenuationColor", result_.attenuation_color), "attenuationColor");
+    result_.dispersion =
+        not_negative(extension("KHR_materials_dispersion").number("dispersion", 0), "dispersion");
+    const Members diffuse = extension("KHR_materials_diffuse_transmission");
+    result_.diffuse_transmission =
+        unit(diffuse.number("diffuseTransmissionFactor", 0), "diffuseTransmissionFactor");
+    result_.diffuse_transmission_texture = texture(diffuse, "diffuseTransmissionTexture");
+    result_.diffuse_transmission_color =
+        unit(diffuse.color("diffuseTransmissionColorFactor", result_.diffuse_transmission_color),
+             "diffuseTransmissionColorFactor");
+    result_.diffuse_transmission_color_texture = texture(diffuse, "diffuseTransmissionColorTexture");
+  }
+
+  void read_coats() {
+    const Members coat = extension("KHR_materials_clearcoat");
+    result_.clearcoat = unit(coat.number("clearcoatFactor", 0), "clearcoatFactor");
+    result_.clearcoat_texture = texture(coat, "clearcoatTexture");
+    result_.clearcoat_roughness =
+        unit(coat.number("clearcoatRoughnessFactor", 0), "clearcoatRoughnessFactor");
+    result_.clearcoat_roughness_texture = texture(coat, "clearcoatRoughnessTexture");
+    result_.clearcoat_normal_texture = texture(coat, "clearcoatNormalTexture");
+    result_.clearcoat_normal_scale = Members(coat.find("clearcoatNormalTexture")).number("scale", 1);
+    const Members sheen = extension("KHR_materials_sheen");
+    result_.sheen_color = unit(sheen.color("sheenColorFactor", result_.sheen_color), "sheenColorFactor");
+    result_.sheen_color_texture = texture(sheen, "sheenColorTexture");
+    result_.sheen_roughness = unit(sheen.number("sheenRoughnessFactor", 0), "sheenRoughnessFactor");
+    result_.sheen_roughness_texture = texture(sheen, "sheenRoughnessTexture");
+  }
+
+  void read_films() {
+    const Members anisotropy = extension("KHR_materials_anisotropy");
+    result_.anisotropy = unit(anisotropy.number("anisotropyStrength", 0), "anisotropyStrength");
+    result_.anisotropy_rotation = anisotropy.number("anisotropyRotation", 0);
+    result_.anisotropy_texture = texture(anisotropy, "anisotropyTexture");
+    const Members film = extension("KHR_materials_iridescence");
+    result_.iridescence = unit(film.number("iridescenceFactor", 0), "iridescenceFactor");
+    result_.iridescence_texture = texture(film, "iridescenceTexture");
+    result_.iridescence_ior = std::max(film.number("iridescenceIor", result_.iridescence_ior), 1.f);
+    result_.iridescence_thickness_min =
+        not_negative(film.number("iridescenceThicknessMinimum", 100), "iridescenceThicknessMinimum");
+    result_.iridescence_thickness_max =
+        not_negative(film.number("iridescenceThicknessMaximum", 400), "iridescenceThicknessMaximum");
+    result_.iridescence_thickness_texture = texture(film, "iridescenceThicknessTexture");
+  }
+
+  Members extension(const std::string& name) const { return {source_.extensions, name}; }
+
+  template <typename TextureInfo>
+  TextureUse use_of(const TextureInfo& info) {
+    if (info.index < 0) return {};
+    return transformed_use(info.index, info.texCoord, Members(info.extensions, "KHR_texture_transform"));
+  }
+
+  TextureUse texture(const Members& owner, const std::string& name) {
+    const Members info(owner.find(name));
+    if (!info.exist()) return {};
+    const Members extensions(info.find("extensions"));
+    return transformed_use(int(info.number("index", -1)), int(info.number("texCoord", 0)),
+                           Members(extensions.find("KHR_texture_transform")));
+  }
+
+  TextureUse transformed_use(int texture, int texcoord, const Members& transform) {
+    TextureUse use;
+    use.texture = texture;
+    use.texcoord = int(transform.number("texCoord", float(texcoord)));
+    use.offset = transform.pair("offset", use.offset);
+    use.scale = transform.pair("scale", use.scale);
+    use.rotation = transform.number("rotation", 0);
+    if (use.texcoord > 1) {
+      warn(fmt::format("TEXCOORD_{} is not read, only 0 and 1 are; 0 is used instead", use.texcoord));
+      use.texcoord = 0;
+    }
+    return use;
+  }
+
+  float unit(float value, const char* property) {
+    if (!(value >= 0 && value <= 1)) clamped(property);
+    return std::clamp(value, 0.f, 1.f);
+  }
+  float not_negative(float value, const char* property) {
+    if (!(value >= 0)) clamped(property);
+    return std::max(value, 0.f);
+  }
+  Rgb unit(const Rgb& c, const char* property) {
+    return {unit(c.x, property), unit(c.y, property), unit(c.z, property)};
+  }
+  Rgb not_negative(const Rgb& c, const char* property) {
+    return {not_negative(c.x, property), not_negative(c.y, property), not_negative(c.z, property)};
+  }
+
+  void clamped(const char* property) {
+    warn(fmt::format("{} is outside its range and was clamped", property));
+  }
+  void warn(std::string text) { notices_.push_back({Notice::Severity::warning, place_, std::move(text)}); }
+
+  const tinygltf::Material& source_;
+  std::string place_;
+  std::vector<Notice>& notices_;
+  MaterialDescription result_;
+};
+
+}  // namespace
+
+std::vector<MaterialDescription> read_materials(const Document& document, std::vector<Notice>& notices) {
+  std::vector<MaterialDescription> materials;
+  for (size_t i = 0; i < document.model().materials.size(); ++i)
+    materials.push_back(MaterialReader(document, i, notices).read());
+  materials.emplace_back();
+  materials.back().name = "default";
+  return materials;
+}
+
+bool needs_tangents(const MaterialDescription& m) {
+  return m.normal_texture || m.clearcoat_normal_texture || m.anisotropy > 0;
+}
+
+}  // namespace vernier

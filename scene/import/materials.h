@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "materials/material_description.h"
+#include "scene/description.h"
+#include "scene/import/document.h"
+
+namespace vernier {
+
+/// All materials of the file, and after them glTF's default material. TextureUse::texture is the file's own
+/// texture index. Values outside their range are clamped, which is noticed.
+std::vector<MaterialDescription> read_materials(const Document& document, std::vector<Notice>& notices);
+
+/// Calls visit(TextureUse&) for each texture slot of a material (const or not).
+template <typename Material, typename Visit>
+void for_each_texture(Material& m, const Visit& visit) {
+  for (auto* use : {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
+                    &m.emissive_texture, &m.specular_texture, &m.specular_color_texture,
+                    &m.transmission_texture, &m.clearcoat_texture, &m.clearcoat_roughness_texture,
+                    &m.clearcoat_normal_texture, &m.sheen_color_texture, &m.sheen_roughness_texture,
+                    &m.anisotropy_texture, &m.iridescence_texture, &m.iridescence_thickness_texture,
+                    &m.diffuse_transmission_texture, &m.diffuse_transmission_color_texture})
+    visit(*use);
+}
+
+/// Whether shading with this material needs tangents.
+bool needs_tangents(const MaterialDescription& material);
+
+}  // namespace vernier

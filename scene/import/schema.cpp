@@ -1,0 +1,154 @@
+#include "scene/import/schema.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <string_view>
+
+#include "core/base/error.h"
+
+namespace vernier {
+namespace {
+
+using nlohmann::json;
+using Kind = ValueRule::Kind;
+
+std::string describe(const json& value) {
+  if (value.is_structured()) return value.is_array() ? fmt::format("{} items", value.size()) : "an object";
+  std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
+  if (text.size() > 60) text = text.substr(0, 57) + "...";
+  return text;
+}
+
+/// Where a value is; spelled out as a JSON pointer only when something is wrong with it.
+struct Place {
+  const Place* parent = nullptr;
+  std::string_view name;
+  size_t index = 0;
+
+  std::string pointer() const {
+    if (!parent) return "";
+    return parent->pointer() + "/" + (name.empty() ? std::to_string(index) : std::string(name));
+  }
+};
+
+class Checker {
+ public:
+  Checker(const json& root, const std::string& file) : root_(root), file_(file) {}
+
+  void check_object(json& value, const ObjectSchema& schema, const Place& place) {
+    if (!value.is_object()) fail(place, "expected an object", value);
+    for (const auto& property : schema.properties) {
+      const auto found = value.find(property.name);
+      if (found != value.end())
+        check(*found, property.value, {&place, property.name});
+      else if (property.required)
+        throw Error(ErrorKind::input, file_, place.parent ? place.pointer() : "/",
+                    fmt::format("'{}' is missing", property.name));
+    }
+    if (schema.others.empty()) return;
+    for (auto& [name, member] : value.items()) check(member, schema.others[0], {&place, name});
+  }
+
+ private:
+  void check(json& value, const ValueRule& rule, const Place& place) {
+    switch (rule.kind) {
+      case Kind::boolean:
+        if (!value.is_boolean()) fail(place, "expected true or false", value);
+        break;
+      case Kind::integer:
+        check_integer(value, rule, place);
+        break;
+      case Kind::index:
+        check_index(value, rule, place);
+        break;
+      case Kind::number:
+        if (!value.is_number() || !(value.get<double>() >= rule.lower && value.get<double>() <= rule.upper))
+          fail(place, "expected a number" + range_text(rule), value);
+        break;
+      case Kind::text:
+        check_text(value, rule, place);
+        break;
+      case Kind::object:
+        check_object(value, *rule.object, place);
+        break;
+      case Kind::array:
+        check_array(value, rule, place);
+        break;
+    }
+  }
+
+  void check_integer(json& value, const ValueRule& rule, const Place& place) const {
+    const double largest = 9007199254740992.0;  // 2^53: every integer below is exact in a double
+    if (value.is_number_float() && value.get<double>() == std::floor(value.get<double>()) &&
+        std::abs(value.get<double>()) < largest)
+      value = int64_t(value.get<double>());
+    // The parser stores what is not negative as unsigned, which is what readers of sizes look for.
+    if (value.is_number_integer() && !value.is_number_unsigned() && value.get<int64_t>() >= 0)
+      value = uint64_t(value.get<int64_t>());
+    if (!value.is_number_integer() ||
+        !(value.get<double>() >= rule.lower && value.get<double>() <= rule.upper))
+      fail(place, "expected an integer" + range_text(rule), value);
+    if (rule.values.empty()) return;
+    for (const int allowed : rule.values)
+      if (value.get<double>() == allowed) return;
+    fail(place, fmt::format("expected one of {}", fmt::join(rule.values, ", ")), value);
+  }
+
+  void check_index(json& value, const ValueRule& rule, const Place& place) {
+    const auto [size, is_new] = sizes_.try_emplace(rule.target, 0);
+    if (is_new) {
+      const json::json_pointer target(rule.target);
+      if (root_.contains(target)) size->second = root_.at(target).size();
+    }
+    if (size->second == 0)
+      fail(place, fmt::format("{}, which it refers to, is missing or empty", rule.target), value);
+    ValueRule range;
+    range.lower = 0;
+    range.upper = double(size->second) - 1;
+    check_integer(value, range, place);
+  }
+
+  void check_text(const json& value, const ValueRule& rule, const Place& place) const {
+    if (!value.is_string()) fail(place, "expected a string", value);
+    if (rule.names.empty()) return;
+    for (const auto& name : rule.names)
+      if (value.get_ref<const std::string&>() == name) return;
+    fail(place, fmt::format("expected one of {}", fmt::join(rule.names, ", ")), value);
+  }
+
+  void check_array(json& value, const ValueRule& rule, const Place& place) {
+    if (!value.is_array()) fail(place, "expected an array", value);
+    if (value.size() < rule.min_items || value.size() > rule.max_items)
+      fail(place,
+           fmt::format("expected {}{} items", rule.min_items == rule.max_items ? "" : "at least ",
+                       rule.min_items),
+           value);
+    for (size_t i = 0; i < value.size(); ++i) check(value[i], rule.items[0], {&place, {}, i});
+  }
+
+  static std::string range_text(const ValueRule& rule) {
+    const bool below = std::isfinite(rule.lower), above = std::isfinite(rule.upper);
+    if (below && above) return fmt::format(" from {} to {}", rule.lower, rule.upper);
+    if (below) return fmt::format(" of at least {}", rule.lower);
+    return above ? fmt::format(" of at most {}", rule.upper) : "";
+  }
+
+  [[noreturn]] void fail(const Place& place, const std::string& expected, const json& found) const {
+    throw Error(ErrorKind::input, file_, place.parent ? place.pointer() : "/",
+                expected + ", found " + describe(found));
+  }
+
+  const json& root_;
+  const std::string& file_;
+  std::map<std::string, size_t> sizes_;
+};
+
+}  // namespace
+
+void check_against_schema(json& document, const ObjectSchema& schema, const std::string& file) {
+  Checker(document, file).check_object(document, schema, {});
+}
+
+}  // namespace vernier

@@ -1,0 +1,156 @@
+#include "scene/import/textures.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <exception>
+#include <map>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/image/image_io.h"
+
+namespace vernier {
+namespace {
+
+struct DecodedImage {
+  std::shared_ptr<const Image8> pixels;  ///< null: cannot be decoded
+  std::string problem;
+  std::string fingerprint;  ///< empty: in a buffer
+};
+
+bool is_ktx2(std::span<const uint8_t> bytes) {
+  const uint8_t signature[] = {0xAB, 'K', 'T', 'X', ' ', '2', '0', 0xBB, '\r', '\n', 0x1A, '\n'};
+  return bytes.size() >= sizeof(signature) && std::memcmp(bytes.data(), signature, sizeof(signature)) == 0;
+}
+
+DecodedImage decode(const Document& document, int index) {
+  const ImageSource& source = document.images()[size_t(index)];
+  const std::string place = fmt::format("/images/{}", index);
+  DecodedImage image;
+  Bytes file;
+  std::span<const uint8_t> bytes;
+  if (source.view >= 0) {
+    bytes = document.view(source.view);
+  } else {
+    file = document.files().read_uri(source.uri, place + "/uri");
+    bytes = file.span();
+    if (!source.uri.starts_with("data:")) image.fingerprint = fingerprint(bytes);
+  }
+  if (is_ktx2(bytes)) {
+    image.problem = "KTX2 (Basis Universal) images cannot be decoded";
+    return image;
+  }
+  try {
+    image.pixels = std::make_shared<Image8>(decode_image8(bytes, document.files().scene_path() + place));
+  } catch (const Error& e) {
+    if (e.kind() == ErrorKind::memory) throw;
+    image.problem = e.what();
+  }
+  return image;
+}
+
+/// Images that a texture may be read from, the best first.
+std::vector<int> candidate_images(const tinygltf::Texture& texture) {
+  std::vector<int> images;
+  for (const char* name : {"EXT_texture_webp", "KHR_texture_basisu"}) {
+    const auto extension = texture.extensions.find(name);
+    if (extension != texture.extensions.end())
+      images.push_back(extension->second.Get("source").GetNumberAsInt());
+  }
+  if (texture.source >= 0) images.push_back(texture.source);
+  return images;
+}
+
+/// Decodes, in parallel, those of the images that are not there yet.
+void decode_missing(const Document& document, const std::vector<int>& indices,
+                    std::map<int, DecodedImage>& images) {
+  std::vector<std::pair<int, DecodedImage*>> jobs;
+  for (const int index : indices)
+    if (const auto [image, is_new] = images.try_emplace(index); is_new)
+      jobs.emplace_back(index, &image->second);
+  std::vector<std::exception_ptr> failures(jobs.size());
+  parallel_for(jobs.size(), [&](size_t i) {
+    try {
+      *jobs[i].second = decode(document, jobs[i].first);
+    } catch (...) {
+      failures[i] = std::current_exception();
+    }
+  });
+  for (const auto& failure : failures)
+    if (failure) std::rethrow_exception(failure);
+}
+
+/// Decodes each texture's best image, and the next best where that fails.
+std::map<int, DecodedImage> decode_images(const Document& document, const std::vector<int>& textures) {
+  std::map<int, DecodedImage> images;
+  std::vector<std::vector<int>> candidates;
+  for (const int texture : textures)
+    candidates.push_back(candidate_images(document.model().textures[size_t(texture)]));
+  for (size_t rank = 0; rank < 3; ++rank) {
+    std::vector<int> wanted;
+    for (const auto& list : candidates)
+      if (rank < list.size() && (rank == 0 || !images.at(list[rank - 1]).pixels))
+        wanted.push_back(list[rank]);
+    decode_missing(document, wanted, images);
+  }
+  return images;
+}
+
+WrapMode wrap_mode(int gltf) {
+  if (gltf == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return WrapMode::clamp_to_edge;
+  return gltf == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? WrapMode::mirrored_repeat : WrapMode::repeat;
+}
+
+Texture make_texture(const Document& document, const tinygltf::Texture& source,
+                     std::shared_ptr<const Image8> pixels) {
+  if (source.sampler < 0) return {std::move(pixels), WrapMode::repeat, WrapMode::repeat, FilterMode::linear};
+  const auto& sampler = document.model().samplers[size_t(source.sampler)];
+  // Magnification decides: minification is what the many samples of a pixel do.
+  const bool nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+  return {std::move(pixels), wrap_mode(sampler.wrapS), wrap_mode(sampler.wrapT),
+          nearest ? FilterMode::nearest : FilterMode::linear};
+}
+
+std::shared_ptr<const Image8> magenta_texel() {
+  auto image = std::make_shared<Image8>(1, 1, 3);
+  image->values = {255, 0, 255};
+  return image;
+}
+
+}  // namespace
+
+DecodedTextures read_textures(const Document& document, const std::vector<int>& wanted,
+                              std::vector<Notice>& notices) {
+  const std::map<int, DecodedImage> images = decode_images(document, wanted);
+  DecodedTextures result;
+  for (const int index : wanted) {
+    const auto& source = document.model().textures[size_t(index)];
+    const std::string place = fmt::format("/textures/{}", index);
+    std::shared_ptr<const Image8> pixels;
+    std::string problem = "it has no image";
+    const auto candidates = candidate_images(source);
+    for (const int image : candidates) {
+      const auto decoded = images.find(image);
+      if (decoded == images.end()) break;
+      pixels = decoded->second.pixels;
+      if (pixels) break;
+      problem = decoded->second.problem;
+    }
+    result.unreadable.push_back(!pixels);
+    if (!pixels) {
+      notices.push_back(
+          {Notice::Severity::warning, place,
+           fmt::format("texture '{}' cannot be read: {}; convert it to PNG, JPEG or WebP. Where it "
+                       "colours a surface that is magenta, elsewhere it is left out",
+                       source.name, problem)});
+      pixels = magenta_texel();
+    }
+    result.textures.push_back(make_texture(document, source, std::move(pixels)));
+  }
+  for (const auto& [index, image] : images)
+    if (!image.fingerprint.empty()) result.fingerprints.push_back(image.fingerprint);
+  return result;
+}
+
+}  // namespace vernier
