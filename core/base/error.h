@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -31,7 +32,11 @@ class Error : public std::runtime_error {
   static std::string join(const std::string& file, const std::string& place, const std::string& problem) {
     std::string line = file;
     if (!place.empty()) line += (line.empty() ? "" : ": ") + place;
-    return line + (line.empty() ? "" : ": ") + problem;
+    line += (line.empty() ? "" : ": ") + problem;
+    // Libraries' own messages, quoted in `problem`, may have several lines.
+    line.erase(line.find_last_not_of("\n") + 1);
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    return line;
   }
 
   ErrorKind kind_;

@@ -87,12 +87,6 @@ constexpr std::array rec709_names{
     "Linear Rec.709 (sRGB)",      linear_rec709, "lin_rec709",   "lin_rec709_srgb", "Utility - Linear - sRGB",
     "Utility - Linear - Rec.709", "lin_srgb",    "Linear BT.709"};
 
-std::string one_line(std::string text) {
-  for (char& c : text)
-    if (c == '\n') c = ' ';
-  return text;
-}
-
 ocio::ConstConfigRcPtr own_config() {
   std::istringstream text(built_in_config);
   return ocio::Config::CreateFromStream(text);
@@ -104,7 +98,8 @@ ocio::ConstConfigRcPtr read_config(const std::string& file) {
     config->validate();
     return config;
   } catch (const ocio::Exception& error) {
-    throw Error(ErrorKind::input, file, {}, "cannot use as an OpenColorIO config: " + one_line(error.what()));
+    throw Error(ErrorKind::input, file, {},
+                std::string("cannot use as an OpenColorIO config: ") + error.what());
   }
 }
 
@@ -173,7 +168,7 @@ DisplayConfig::Transform DisplayConfig::transform(const std::string& view) const
       processor->apply(pixels);
     };
   } catch (const ocio::Exception& error) {
-    throw Error(ErrorKind::input, name_, {}, "cannot make view '" + view + "': " + one_line(error.what()));
+    throw Error(ErrorKind::input, name_, {}, "cannot make view '" + view + "': " + error.what());
   }
 }
 

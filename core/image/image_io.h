@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,6 +27,26 @@ struct ImageLimits {
 /// named R, G, B where there are such, else the first three, else grey repeated; alpha is dropped. Outside
 /// OpenEXR's data window the picture is black. Throws Error(input) naming the file.
 Image read_image(const std::string& path, const ImageLimits& limits = {});
+
+/// All channels of a file and the texts in its header.
+struct LayeredImage {
+  Image image;
+  std::vector<std::string> channel_names;  ///< as many as image.channels
+  Metadata metadata;
+  bool linear = false;  ///< the file stores floating-point numbers, not display values in [0, 1]
+
+  /// What read_image would return.
+  Image rgb() const;
+  /// The channels NAME.R, NAME.G, NAME.B or NAME.X, NAME.Y, NAME.Z; empty when one is missing.
+  std::optional<Image> layer(const std::string& name) const;
+
+ private:
+  int channel(const std::string& name) const;
+  Image select(const std::array<int, 3>& chosen) const;
+};
+
+/// As read_image, with every channel of the file's first part.
+LayeredImage read_layers(const std::string& path, const ImageLimits& limits = {});
 
 /// Decodes a PNG, JPEG or WebP held in memory to 8 bits a channel, in the file's own encoding, 1 to 4
 /// channels, unassociated alpha; sixteen bits are rounded to eight. `name` is what errors call it. A

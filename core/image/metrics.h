@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "core/image/image.h"
 
@@ -8,13 +9,19 @@ namespace vernier {
 
 /// Differences between a picture x and a reference r of the same size, over all pixels and three channels.
 struct ImageDifference {
-  double mse = 0;                  ///< mean (x - r)^2
-  double rel_mse = 0;              ///< mean (x - r)^2 / (r^2 + 0.01)
-  double mae = 0;                  ///< mean |x - r|
-  double largest = 0;              ///< max |x - r|
-  int largest_x = 0, largest_y = 0;  ///< pixel of `largest`
+  double mse = 0;                                  ///< mean (x - r)^2
+  double rel_mse = 0;                              ///< mean (x - r)^2 / (r^2 + 0.01)
+  double mae = 0;                                  ///< mean |x - r|
+  double largest = 0;                              ///< max |x - r|
+  int largest_x = 0, largest_y = 0;                ///< pixel of `largest`, the first in reading order
   std::array<double, 3> mean{}, reference_mean{};  ///< per channel
-  int64_t not_finite = 0;          ///< values of either that are NaN or infinite; left out of everything above
+  double reference_largest = 0;                    ///< max r
+  int64_t not_finite =
+      0;  ///< values of x or r that are NaN or infinite; each such pair is left out of the above
+
+  double rmse() const { return std::sqrt(mse); }
+  /// Peak signal-to-noise ratio, 10 log10(peak^2 / mse) in decibels; infinite when the pictures are equal.
+  double psnr(double peak) const;
 };
 
 /// Throws Error(usage) when sizes differ or either has fewer than three channels.

@@ -89,6 +89,69 @@ TEST(ImageIo, ExrHeaderHasMetadataChannelNamesAndCompression) {
   EXPECT_EQ(rgb_at(read_image(path), 1, 0), rgb_at(hdr_ramp(4, 4, 6), 1, 0));
 }
 
+TEST(ImageIo, LayersComeBackByName) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> names{"R",        "G",       "B",       "normal.X", "normal.Y",
+                                       "normal.Z", "error.R", "error.G", "error.B",  "depth.Z"};
+  const Image image = hdr_ramp(5, 3, 10);
+  write_exr(folder.file("a.exr"), image, names, {{"vernier:seed", "7"}, {"comment", "a b"}});
+  const LayeredImage back = read_layers(folder.file("a.exr"));
+  EXPECT_TRUE(back.linear);
+  EXPECT_THAT(back.channel_names, testing::UnorderedElementsAreArray(names));
+  EXPECT_EQ(back.metadata.at("vernier:seed"), "7");
+  EXPECT_EQ(back.metadata.at("comment"), "a b");
+  EXPECT_FALSE(back.metadata.contains("compression"));
+  const Image rgb = back.rgb(), normal = back.layer("normal").value(), error = back.layer("error").value();
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_EQ(rgb.pixel(4, 2)[c], image.pixel(4, 2)[c]);
+    EXPECT_EQ(normal.pixel(4, 2)[c], image.pixel(4, 2)[3 + c]);
+    EXPECT_EQ(error.pixel(4, 2)[c], image.pixel(4, 2)[6 + c]);
+  }
+  EXPECT_FALSE(back.layer("albedo"));
+  EXPECT_FALSE(back.layer("depth"));
+  // Writing what was read gives the same picture again.
+  write_exr(folder.file("b.exr"), back.image, back.channel_names, back.metadata);
+  EXPECT_EQ(read_layers(folder.file("b.exr")).image.values, back.image.values);
+  EXPECT_EQ(read_layers(folder.file("b.exr")).metadata, back.metadata);
+}
+
+TEST(ImageIo, DisplayValuesAreToldFromLinearOnes) {
+  const TemporaryFolder folder;
+  write_image8(folder.file("a.png"), Image8(2, 2, 4), {});
+  const LayeredImage png = read_layers(folder.file("a.png"));
+  EXPECT_FALSE(png.linear);
+  EXPECT_THAT(png.channel_names, testing::ElementsAre("R", "G", "B", "A"));
+  // Radiance HDR: one pixel of (1, 0.5, 0.25).
+  const std::string hdr =
+      "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n" + std::string("\x80\x40\x20\x81");
+  const LayeredImage radiance = read_layers(folder.write("a.hdr", hdr));
+  EXPECT_TRUE(radiance.linear);
+  EXPECT_THAT(radiance.rgb().values, testing::Pointwise(testing::FloatNear(0.01f), {1.f, 0.5f, 0.25f}));
+}
+
+// Shrinks the data window of a file that was written with both windows equal, and its pixels with it.
+TEST(ImageIo, OutsideTheDataWindowThePictureIsBlack) {
+  const TemporaryFolder folder;
+  write_exr(folder.file("a.exr"), hdr_ramp(2, 1, 3), {"R", "G", "B"}, {});
+  std::string bytes = test::read_file(folder.file("a.exr"));
+  const std::string key("displayWindow\0box2i\0\x10\0\0\0", 24);
+  const size_t at = bytes.find(key);
+  ASSERT_NE(at, std::string::npos);
+  // The display window becomes [-1, 3] x [-1, 1] about the stored [0, 1] x [0, 0].
+  bytes.replace(at + key.size(), 16, std::string("\xff\xff\xff\xff\xff\xff\xff\xff\x03\0\0\0\x01\0\0\0", 16));
+  const Image picture = read_image(folder.write("b.exr", bytes));
+  ASSERT_EQ(picture.width, 5);
+  ASSERT_EQ(picture.height, 3);
+  EXPECT_EQ(rgb_at(picture, 1, 1), rgb_at(hdr_ramp(2, 1, 3), 0, 0));
+  EXPECT_EQ(rgb_at(picture, 2, 1), rgb_at(hdr_ramp(2, 1, 3), 1, 0));
+  for (const auto& [x, y] : {std::pair{0, 1}, {3, 1}, {1, 0}, {1, 2}})
+    EXPECT_TRUE(is_black(rgb_at(picture, x, y)));
+}
+
+TEST(ImageIo, SpecialFilesAreRefused) {
+  EXPECT_THAT(error_of(ErrorKind::input, [] { read_image("/dev/zero"); }), HasSubstr("not a regular file"));
+}
+
 TEST(ImageIo, WritingTwiceGivesTheSameBytes) {
   const TemporaryFolder folder;
   for (const char* name : {"a.exr", "b.exr"})
