@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""Checks that folders include only leftward (core <- materials <- scene <- integrators <- apps) and that third-party
+headers stay in the files that wrap them."""
+
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+ORDER = ["core", "materials", "scene", "integrators", "apps"]
+
+# Headers whose name matches may only be included by files whose path matches.
+WRAPPED = [
+    (r"embree[34]/.*", r"scene/accel/embree[^/]*\.(cpp|h)"),
+    (r"tiny_gltf\.h", r"scene/import/.*"),
+    (r"OpenImageIO/hash\.h", r"scene/import/asset_files\.cpp|core/image/[^/]*\.cpp"),
+    (r"OpenImageIO/(?!hash\.h).*", r"(core/image/[^/]*|tests/core/.*)\.cpp"),
+    (r"OpenColorIO/.*", r"(core/image/[^/]*|tests/core/.*)\.cpp"),
+    (r"(draco|meshoptimizer).*", r"scene/import/[^/]*\.cpp"),
+    (r"CLI/.*", r"apps/.*"),
+    (r"(gtest|gmock)/.*", r"tests/.*"),
+]
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
+
+
+def problems_of(path):
+    folder = path.split("/")[0]
+    for bracket, header in INCLUDE.findall((ROOT / path).read_text(encoding="utf-8")):
+        first = header.split("/")[0]
+        if bracket == '"' and "/" in header:
+            if folder != "tests" and (first == "tests" or
+                                      first in ORDER and ORDER.index(first) > ORDER.index(folder)):
+                yield f"{path} includes {header}: {folder} may not see {first}"
+            if first in ORDER + ["tests"] and not (ROOT / header).is_file():
+                yield f"{path} includes {header}, which does not exist"
+        for wrapped, allowed in WRAPPED:
+            if re.fullmatch(wrapped, header) and not re.fullmatch(allowed, path):
+                yield f"{path} includes {header}; only {allowed} may"
+
+
+def main():
+    paths = [str(p.relative_to(ROOT)) for folder in ORDER + ["tests"] for pattern in ("*.h", "*.cpp")
+             for p in sorted((ROOT / folder).rglob(pattern))]
+    problems = [problem for path in paths for problem in problems_of(path)]
+    print("\n".join(problems) if problems else f"{len(paths)} files, no include points the wrong way")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

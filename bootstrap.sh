@@ -1,0 +1,143 @@
+#!/usr/bin/env bash
+# From a fresh clone to pictures or test results with one command. See `bash bootstrap.sh help`.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+readonly package_list=third_party/apt-packages.txt
+readonly build_folder=build/release
+readonly program=$build_folder/vernier
+readonly assimp_models=/usr/share/assimp/models
+
+say() { printf '%s\n' "$*"; }
+fail() { printf 'bootstrap: %s\n' "$*" >&2; exit 1; }
+
+usage() {
+  cat <<'HELP'
+usage: bash bootstrap.sh COMMAND
+
+  deps    install the Debian or Ubuntu packages of third_party/apt-packages.txt that are missing
+  build   deps, then configure and build the program: build/release/vernier
+  demo    build, then render a Cornell box and other scenes with each integrator into out/
+  test    deps, then build the program and its tests, and run them all
+  help    this text
+
+Each command can be run again at any time and only does what is left to do.
+Environment: JOBS=N parallel jobs; VERNIER_WERROR=ON treats compiler warnings as errors.
+HELP
+}
+
+# Processors, but no more than one job for each 1.5 GB of memory.
+job_count() {
+  local processors gigabytes
+  processors=$(nproc)
+  gigabytes=$(awk '/^MemTotal/ { print int($2 / 1.5e6) }' /proc/meminfo)
+  ((gigabytes >= 1)) || gigabytes=1
+  say "${JOBS:-$((processors < gigabytes ? processors : gigabytes))}"
+}
+
+# --- deps ---
+
+# Names of the list's packages; "required" or "optional" ones (those whose comment begins with "optional").
+listed_packages() {
+  local optional=0
+  [[ $1 == optional ]] && optional=1
+  awk -v wanted=$optional '/^[a-z0-9]/ { if (($2 == "#" && $3 ~ /^optional/) == wanted) print $1 }' "$package_list"
+}
+
+is_installed() { [[ $(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]; }
+
+missing_packages() {
+  local package
+  for package in $(listed_packages "$1"); do
+    is_installed "$package" || say "$package"
+  done
+}
+
+as_root() {
+  if ((EUID == 0)); then "$@"; else sudo "$@"; fi
+}
+
+deps() {
+  command -v apt-get >/dev/null && command -v dpkg-query >/dev/null ||
+    fail "this is no Debian or Ubuntu; install what $package_list lists by other means, then use cmake --preset release"
+  local required optional package install
+  mapfile -t required < <(missing_packages required)
+  mapfile -t optional < <(missing_packages optional)
+  if ((${#required[@]} > 0)); then
+    ((EUID == 0)) || command -v sudo >/dev/null ||
+      fail "run this as root or install sudo; missing: ${required[*]}"
+    as_root apt-get update -qq
+  fi
+  install=("${required[@]}")
+  for package in "${optional[@]}"; do
+    if apt-cache show "$package" >/dev/null 2>&1; then
+      install+=("$package")
+    else
+      say "deps: this distribution has no $package; going on without it"
+    fi
+  done
+  if ((${#install[@]} == 0)); then
+    say "deps: every package is there"
+    return
+  fi
+  say "deps: installing ${install[*]}"
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${install[@]}"
+}
+
+# --- build ---
+
+configure() { cmake --preset release -DVERNIER_WERROR="${VERNIER_WERROR:-OFF}"; }
+
+build() {
+  deps
+  configure
+  cmake --build "$build_folder" --parallel "$(job_count)" --target "$@"
+}
+
+# --- demo ---
+
+render_with_each_integrator() {
+  local scene=$1 name=$2 integrator
+  shift 2
+  for integrator in $("$program" render --integrator help | awk '{ print $1 }'); do
+    "$program" render "$scene" -o "out/$name-$integrator.png" --integrator "$integrator" "$@"
+  done
+}
+
+demo() {
+  build vernier
+  mkdir -p out
+  SECONDS=0
+  render_with_each_integrator tests/scenes/cornell_box.gltf cornell_box --size 512x512 --spp 64
+  render_with_each_integrator tests/scenes/two_spheres.gltf two_spheres --size 640x480 --spp 64
+  local model name found=0
+  for model in glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb glTF2/ClearCoat-glTF/ClearCoatTest.gltf; do
+    [[ -f $assimp_models/$model ]] || continue
+    found=1
+    name=$(basename "${model%.*}")
+    render_with_each_integrator "$assimp_models/$model" "$name" --size 640x480 --spp 64
+  done
+  ((found)) || say "demo: the models of the package assimp-testmodels are not there; only our own scenes were rendered"
+  say "demo: rendered in $SECONDS s"
+  say "demo: pictures are in $PWD/out:"
+  ls -1 out/*.png
+}
+
+# --- test ---
+
+run_tests() {
+  build all
+  ctest --test-dir "$build_folder" --parallel "$(job_count)" --output-on-failure --no-tests=error
+}
+
+case "${1:-help}" in
+  deps) deps ;;
+  build) build vernier && say "build: the program is $PWD/$program" ;;
+  demo) demo ;;
+  test) run_tests ;;
+  help | -h | --help) usage ;;
+  *)
+    usage >&2
+    exit 2
+    ;;
+esac
