@@ -34,5 +34,6 @@ struct Program {
 // A misuse found by the callback or by `run` is Error(usage).
 void register_render(Program& program);
 void register_info(Program& program);
+void register_compare(Program& program);
 
 }  // namespace vernier::apps

@@ -17,6 +17,7 @@ namespace {
 constexpr void (*subcommands[])(Program&) = {
     register_render,
     register_info,
+    register_compare,
 };
 
 ExitCode exit_code(ErrorKind kind) {
