@@ -28,6 +28,8 @@ find_package(nlohmann_json REQUIRED)
 find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(TinyGLTF REQUIRED)
+find_package(draco REQUIRED)
+find_package(meshoptimizer REQUIRED)
 
 # Embree 4 when there is one, else 3.13; scene/accel/embree.cpp serves both.
 find_package(embree 4 QUIET)

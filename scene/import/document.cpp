@@ -7,6 +7,8 @@
 
 #include "core/base/error.h"
 #include "scene/import/container.h"
+#include "scene/import/meshopt.h"
+#include "scene/import/ordered_parallel.h"
 #include "scene/import/schema.h"
 
 namespace vernier {
@@ -59,6 +61,12 @@ void check_version(const json& root, const std::string& file) {
                 fmt::format("glTF {} cannot be read, only 2.0; convert the file to glTF 2.0", least));
 }
 
+bool is_meshopt_fallback(const json& buffer) {
+  if (!buffer.contains("extensions") || !buffer["extensions"].contains("EXT_meshopt_compression"))
+    return false;
+  return buffer["extensions"]["EXT_meshopt_compression"].value("fallback", false);
+}
+
 }  // namespace
 
 Document::Document(const std::string& path) : files_(path) {
@@ -89,6 +97,11 @@ void Document::read_buffers(const json& root, std::span<const uint8_t> binary_ch
     const json& buffer = buffers[i];
     const std::string place = fmt::format("/buffers/{}", i);
     std::span<const uint8_t> bytes = i == 0 ? binary_chunk : std::span<const uint8_t>();
+    // Nothing reads what a compressed copy replaces, and it need not be there.
+    if (is_meshopt_fallback(buffer)) {
+      buffers_.emplace_back();
+      continue;
+    }
     if (buffer.contains("uri")) {
       storage_.push_back(files_.read_uri(buffer["uri"].get_ref<const std::string&>(), place + "/uri"));
       bytes = storage_.back().span();
@@ -139,15 +152,42 @@ void Document::parse_model(json& root) {
     if (accessor.bufferView == no_view) accessor.bufferView = -1;
 }
 
+std::span<const uint8_t> Document::locate(int buffer, size_t offset, size_t length,
+                                          const std::string& place) const {
+  const auto bytes = buffers_[size_t(buffer)];
+  if (offset > bytes.size() || length > bytes.size() - offset)
+    fail(place, fmt::format("{} bytes from byte {} on are not in buffer {}, which has {}", length, offset,
+                            buffer, bytes.size()));
+  return bytes.subspan(offset, length);
+}
+
 void Document::locate_views() {
-  for (size_t i = 0; i < model_.bufferViews.size(); ++i) {
-    const auto& view = model_.bufferViews[i];
-    const auto bytes = buffers_[size_t(view.buffer)];
-    if (view.byteOffset > bytes.size() || view.byteLength > bytes.size() - view.byteOffset)
-      fail(fmt::format("/bufferViews/{}", i), fmt::format("bytes {} to {} of a buffer of {}", view.byteOffset,
-                                                          view.byteOffset + view.byteLength, bytes.size()));
-    views_.push_back(bytes.subspan(view.byteOffset, view.byteLength));
-  }
+  const auto& views = model_.bufferViews;
+  views_.resize(views.size());
+  std::vector<Bytes> decoded(views.size());
+  for_each_in_parallel(views.size(), [&](size_t i) {
+    const std::string place = fmt::format("/bufferViews/{}", i);
+    const auto compression = views[i].extensions.find("EXT_meshopt_compression");
+    if (compression == views[i].extensions.end()) {
+      views_[i] = locate(views[i].buffer, views[i].byteOffset, views[i].byteLength, place);
+      return;
+    }
+    const auto& values = compression->second;
+    const auto size = [&](const char* name) { return size_t(values.Get(name).GetNumberAsInt()); };
+    MeshoptView view;
+    view.compressed =
+        locate(values.Get("buffer").GetNumberAsInt(), values.Has("byteOffset") ? size("byteOffset") : 0,
+               size("byteLength"), place + "/extensions/EXT_meshopt_compression");
+    view.count = size("count");
+    view.stride = size("byteStride");
+    view.mode = values.Get("mode").Get<std::string>();
+    view.filter = values.Has("filter") ? values.Get("filter").Get<std::string>() : "NONE";
+    if (const std::string problem = decode_meshopt(view, decoded[i]); !problem.empty())
+      fail(place + "/extensions/EXT_meshopt_compression", problem);
+    views_[i] = decoded[i].span();
+  });
+  for (auto& bytes : decoded)
+    if (bytes.data) storage_.push_back(std::move(bytes));
 }
 
 }  // namespace vernier

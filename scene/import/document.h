@@ -31,7 +31,7 @@ class Document {
   const tinygltf::Model& model() const { return model_; }
   const std::vector<ImageSource>& images() const { return images_; }
 
-  /// Bytes of a buffer view.
+  /// Bytes of a buffer view, decompressed.
   std::span<const uint8_t> view(int index) const { return views_[size_t(index)]; }
 
   /// Fingerprints of the scene file and the buffers read, in order.
@@ -45,6 +45,7 @@ class Document {
   void read_image_sources(const nlohmann::json& json);
   void parse_model(nlohmann::json& json);
   void locate_views();
+  std::span<const uint8_t> locate(int buffer, size_t offset, size_t length, const std::string& place) const;
 
   AssetFiles files_;
   tinygltf::Model model_;

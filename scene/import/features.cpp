@@ -18,7 +18,10 @@ struct ExtensionEntry {
 
 /// What the renderer makes of each extension. One that is not here is not known at all.
 constexpr ExtensionEntry extensions[] = {
+    {"EXT_mesh_gpu_instancing", Status::exact, ""},
+    {"EXT_meshopt_compression", Status::exact, ""},
     {"EXT_texture_webp", Status::exact, ""},
+    {"KHR_draco_mesh_compression", Status::exact, ""},
     {"KHR_lights_punctual", Status::exact, "candela and lux are taken as W/sr and W/m^2"},
     {"KHR_materials_emissive_strength", Status::exact, "factor times strength is radiance in W/(m^2 sr)"},
     {"KHR_materials_ior", Status::exact, ""},
@@ -27,7 +30,9 @@ constexpr ExtensionEntry extensions[] = {
     {"KHR_materials_unlit", Status::exact, ""},
     {"KHR_materials_volume", Status::exact,
      "the mesh is the boundary, so thickness only tells volumes from thin walls"},
+    {"KHR_materials_variants", Status::exact, "one variant at a time, by name"},
     {"KHR_mesh_quantization", Status::exact, ""},
+    {"KHR_node_visibility", Status::exact, ""},
     {"KHR_texture_transform", Status::exact, ""},
     {"KHR_xmp_json_ld", Status::exact, "metadata, nothing to render"},
 
@@ -67,14 +72,14 @@ bool uses_mipmaps(const tinygltf::Model& model) {
 }
 
 constexpr CoreEntry core_features[] = {
-    {"animations", Status::ignored, "nodes stay where the file puts them",
+    {"animations", Status::exact, "one animation poses the scene at the time asked for, else it is at rest",
      [](const tinygltf::Model& model) { return !model.animations.empty(); }},
     {"material.occlusionTexture", Status::ignored,
      "light transport computes occlusion itself (glTF 2.0, 3.9.3)", uses_occlusion},
-    {"mesh.primitive.targets", Status::ignored, "morph targets have no effect", uses_morph_targets},
+    {"mesh.primitive.targets", Status::exact, "morphed by the weights at that time", uses_morph_targets},
     {"sampler.minFilter mipmaps", Status::exact, "the samples of a pixel average the texels they meet",
      uses_mipmaps},
-    {"skins", Status::ignored, "meshes stay in their bind pose",
+    {"skins", Status::exact, "posed by the joints at that time",
      [](const tinygltf::Model& model) { return !model.skins.empty(); }},
 };
 

@@ -62,17 +62,51 @@ struct GltfSchema {
   const ObjectSchema transmission{{{"transmissionFactor", number()}, {"transmissionTexture", texture}}, {}};
   const ObjectSchema volume{{{"thicknessFactor", number(0)},
                              {"thicknessTexture", texture},
-                             {"attenuationDistance", number(0)},
+                             {"attenuationDistance", number(1e-30)},
                              {"attenuationColor", numbers(3)}},
                             {}};
+  const ObjectSchema clearcoat{{{"clearcoatFactor", number()},
+                                {"clearcoatTexture", texture},
+                                {"clearcoatRoughnessFactor", number()},
+                                {"clearcoatRoughnessTexture", texture},
+                                {"clearcoatNormalTexture", texture}},
+                               {}};
+  const ObjectSchema sheen{{{"sheenColorFactor", numbers(3)},
+                            {"sheenColorTexture", texture},
+                            {"sheenRoughnessFactor", number()},
+                            {"sheenRoughnessTexture", texture}},
+                           {}};
+  const ObjectSchema anisotropy{
+      {{"anisotropyStrength", number()}, {"anisotropyRotation", number()}, {"anisotropyTexture", texture}},
+      {}};
+  const ObjectSchema iridescence{{{"iridescenceFactor", number()},
+                                  {"iridescenceTexture", texture},
+                                  {"iridescenceIor", number()},
+                                  {"iridescenceThicknessMinimum", number()},
+                                  {"iridescenceThicknessMaximum", number()},
+                                  {"iridescenceThicknessTexture", texture}},
+                                 {}};
+  const ObjectSchema dispersion{{{"dispersion", number()}}, {}};
+  const ObjectSchema diffuse_transmission{{{"diffuseTransmissionFactor", number()},
+                                           {"diffuseTransmissionTexture", texture},
+                                           {"diffuseTransmissionColorFactor", numbers(3)},
+                                           {"diffuseTransmissionColorTexture", texture}},
+                                          {}};
   const ObjectSchema empty{};
-  const ObjectSchema material_extensions{{{"KHR_materials_emissive_strength", object(emissive_strength)},
-                                          {"KHR_materials_ior", object(ior)},
-                                          {"KHR_materials_specular", object(specular)},
-                                          {"KHR_materials_transmission", object(transmission)},
-                                          {"KHR_materials_volume", object(volume)},
-                                          {"KHR_materials_unlit", object(empty)}},
-                                         {}};
+  const ObjectSchema material_extensions{
+      {{"KHR_materials_anisotropy", object(anisotropy)},
+       {"KHR_materials_clearcoat", object(clearcoat)},
+       {"KHR_materials_diffuse_transmission", object(diffuse_transmission)},
+       {"KHR_materials_dispersion", object(dispersion)},
+       {"KHR_materials_emissive_strength", object(emissive_strength)},
+       {"KHR_materials_ior", object(ior)},
+       {"KHR_materials_iridescence", object(iridescence)},
+       {"KHR_materials_sheen", object(sheen)},
+       {"KHR_materials_specular", object(specular)},
+       {"KHR_materials_transmission", object(transmission)},
+       {"KHR_materials_unlit", object(empty)},
+       {"KHR_materials_volume", object(volume)}},
+      {}};
   const ObjectSchema metallic_roughness{{{"baseColorFactor", numbers(4)},
                                          {"baseColorTexture", texture},
                                          {"metallicFactor", number()},
@@ -108,12 +142,28 @@ struct GltfSchema {
                                      {"extensions", object(texture_extensions)}},
                                     {}};
 
-  const ObjectSchema buffer{{{"uri", text()}, {"byteLength", size(1), required}, {"name", text()}}, {}};
+  const ObjectSchema meshopt_fallback{{{"fallback", boolean()}}, {}};
+  const ObjectSchema buffer_extensions{{{"EXT_meshopt_compression", object(meshopt_fallback)}}, {}};
+  const ObjectSchema buffer{{{"uri", text()},
+                             {"byteLength", size(1), required},
+                             {"name", text()},
+                             {"extensions", object(buffer_extensions)}},
+                            {}};
+  const ObjectSchema meshopt{{{"buffer", index_into("/buffers"), required},
+                              {"byteOffset", integer(0, max_int)},
+                              {"byteLength", integer(1, max_int), required},
+                              {"byteStride", integer(1, 256), required},
+                              {"count", integer(1, max_int), required},
+                              {"mode", text({"ATTRIBUTES", "TRIANGLES", "INDICES"}), required},
+                              {"filter", text({"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"})}},
+                             {}};
+  const ObjectSchema view_extensions{{{"EXT_meshopt_compression", object(meshopt)}}, {}};
   const ObjectSchema buffer_view{{{"buffer", index_into("/buffers"), required},
                                   {"byteOffset", size()},
                                   {"byteLength", size(1), required},
                                   {"byteStride", integer(4, 252)},
-                                  {"name", text()}},
+                                  {"name", text()},
+                                  {"extensions", object(view_extensions)}},
                                  {}};
   const ObjectSchema sparse_indices{{{"bufferView", view_index, required},
                                      {"byteOffset", integer(0, max_int)},
@@ -139,11 +189,23 @@ struct GltfSchema {
       {}};
 
   const ObjectSchema attributes{{}, {accessor_index}};
+  const ObjectSchema draco_attributes{{}, {integer(0, max_int)}};
+  const ObjectSchema draco{
+      {{"bufferView", view_index, required}, {"attributes", object(draco_attributes), required}}, {}};
+  const ObjectSchema variant_mapping{
+      {{"material", index_into("/materials"), required},
+       {"variants", array(index_into("/extensions/KHR_materials_variants/variants")), required}},
+      {}};
+  const ObjectSchema variant_mappings{{{"mappings", array(object(variant_mapping)), required}}, {}};
+  const ObjectSchema primitive_extensions{
+      {{"KHR_draco_mesh_compression", object(draco)}, {"KHR_materials_variants", object(variant_mappings)}},
+      {}};
   const ObjectSchema primitive{{{"attributes", object(attributes), required},
                                 {"indices", accessor_index},
                                 {"material", index_into("/materials")},
                                 {"mode", integer(0, 6)},
-                                {"targets", array(object(attributes))}},
+                                {"targets", array(object(attributes))},
+                                {"extensions", object(primitive_extensions)}},
                                {}};
   const ObjectSchema mesh{
       {{"primitives", array(object(primitive), 1), required}, {"weights", array(number())}, {"name", text()}},
@@ -175,7 +237,12 @@ struct GltfSchema {
   const ObjectSchema light_use{{{"light", index_into("/extensions/KHR_lights_punctual/lights"), required}},
                                {}};
 
-  const ObjectSchema node_extensions{{{"KHR_lights_punctual", object(light_use)}}, {}};
+  const ObjectSchema instancing{{{"attributes", object(attributes), required}}, {}};
+  const ObjectSchema visibility{{{"visible", boolean()}}, {}};
+  const ObjectSchema node_extensions{{{"EXT_mesh_gpu_instancing", object(instancing)},
+                                      {"KHR_lights_punctual", object(light_use)},
+                                      {"KHR_node_visibility", object(visibility)}},
+                                     {}};
   const ObjectSchema node{{{"children", array(index_into("/nodes"))},
                            {"mesh", index_into("/meshes")},
                            {"camera", index_into("/cameras")},
@@ -208,7 +275,10 @@ struct GltfSchema {
                                {}};
 
   const ObjectSchema asset{{{"version", text(), required}, {"minVersion", text()}}, {}};
-  const ObjectSchema root_extensions{{{"KHR_lights_punctual", object(lights)}}, {}};
+  const ObjectSchema variant{{{"name", text(), required}}, {}};
+  const ObjectSchema variants{{{"variants", array(object(variant)), required}}, {}};
+  const ObjectSchema root_extensions{
+      {{"KHR_lights_punctual", object(lights)}, {"KHR_materials_variants", object(variants)}}, {}};
   const ObjectSchema root{{{"asset", object(asset), required},
                            {"extensionsUsed", array(text())},
                            {"extensionsRequired", array(text())},

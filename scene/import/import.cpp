@@ -83,13 +83,15 @@ SceneDescription import_scene(const std::string& path, const ImportOptions& opti
   scene.features = report_features(document);
   add_feature_notices(scene);
 
-  std::vector<Imath::M44d> locals;
-  for (const auto& node : document.model().nodes) locals.push_back(local_matrix(node));
-  const NodePlaces places = place_nodes(document, locals);
+  std::vector<NodePose> poses = rest_pose(document);
+  if (options.time) apply_animation(document, options.animation, *options.time, poses);
+  const NodePlaces places = place_nodes(document, poses);
   add_cameras_and_lights(document, places, scene);
 
   std::vector<MaterialDescription> materials = read_materials(document, scene.notices);
-  Placement placement = place_meshes(document, places, materials);
+  InstancePlacer placer(document, materials, options.variant);
+  for (const int node : places.shown) placer.add_node(node, places, poses[size_t(node)]);
+  Placement placement = placer.take();
   scene.instances = std::move(placement.instances);
   if (placement.without_surface)
     scene.notices.push_back(
@@ -97,7 +99,7 @@ SceneDescription import_scene(const std::string& path, const ImportOptions& opti
          fmt::format("{} primitives have no surface (points, lines or no positions) and are left out",
                      placement.without_surface)});
   MeshRepairs repairs;
-  scene.meshes = read_meshes(document, placement.meshes, repairs);
+  scene.meshes = read_meshes(document, placement.meshes, places.to_world, repairs);
   for (auto& notice : repairs.notices()) scene.notices.push_back(std::move(notice));
 
   std::vector<std::string> fingerprints = document.fingerprints();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "scene/description.h"
@@ -8,9 +9,13 @@ namespace vernier {
 
 struct ImportOptions {
   bool strict = false;  ///< anything not honoured exactly is an error
+  std::string variant;  ///< of KHR_materials_variants, by name; empty: the materials the file has without
+  std::optional<double> time;  ///< seconds at which an animation poses the scene; none: at rest
+  std::string animation;       ///< name or index of that animation; empty: the first
 };
 
-/// Reads a .gltf or .glb file with all it refers to. Throws Error(input) with the file and JSON pointer.
+/// Reads a .gltf or .glb file with all it refers to. Throws Error(input) with the file and JSON pointer, and
+/// Error(usage) on a variant or an animation that the file has not.
 SceneDescription import_scene(const std::string& path, const ImportOptions& options = {});
 
 }  // namespace vernier

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <map>
+#include <string>
 #include <vector>
 
 #include "scene/description.h"
@@ -13,13 +15,31 @@ namespace vernier {
 /// materials.
 struct Placement {
   std::vector<InstanceDescription> instances;
-  std::vector<MeshRequest> meshes;  ///< each mesh primitive once, however many nodes use it
+  std::vector<MeshRequest> meshes;  ///< each shape once, however many nodes use it
   size_t without_surface = 0;       ///< primitives left out: points, lines, no positions
 };
 
-/// One instance per node and primitive of the nodes shown. `materials`: all of the file, the default one
-/// last.
-Placement place_meshes(const Document& document, const NodePlaces& places,
-                       const std::vector<MaterialDescription>& materials);
+/// Makes one instance per node and primitive, times EXT_mesh_gpu_instancing. Throws Error(input).
+class InstancePlacer {
+ public:
+  /// `materials`: all of the file, the default one last. `variant` names one of KHR_materials_variants, or is
+  /// empty; throws Error(usage) when there is no such one.
+  InstancePlacer(const Document& document, const std::vector<MaterialDescription>& materials,
+                 const std::string& variant);
+
+  void add_node(int node, const NodePlaces& places, const NodePose& pose);
+  Placement take() { return std::move(result_); }
+
+ private:
+  void add_instances(int node, const InstanceDescription& prototype, const Imath::M44d& to_world);
+  uint32_t material_of(const tinygltf::Primitive& primitive) const;
+  uint32_t mesh_of(MeshUse use, uint32_t material);
+
+  const Document& document_;
+  const std::vector<MaterialDescription>& materials_;
+  int variant_ = -1;
+  std::map<MeshUse, uint32_t> meshes_;
+  Placement result_;
+};
 
 }  // namespace vernier

@@ -221,8 +221,4 @@ std::vector<MaterialDescription> read_materials(const Document& document, std::v
   return materials;
 }
 
-bool needs_tangents(const MaterialDescription& m) {
-  return m.normal_texture || m.clearcoat_normal_texture || m.anisotropy > 0;
-}
-
 }  // namespace vernier

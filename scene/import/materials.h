@@ -24,7 +24,4 @@ void for_each_texture(Material& m, const Visit& visit) {
     visit(*use);
 }
 
-/// Whether shading with this material needs tangents.
-bool needs_tangents(const MaterialDescription& material);
-
 }  // namespace vernier

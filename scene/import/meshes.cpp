@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <exception>
 
-#include "core/base/parallel.h"
+#include "scene/import/deform.h"
+#include "scene/import/ordered_parallel.h"
 #include "scene/import/primitive_data.h"
+#include "scene/import/tangents.h"
 
 namespace vernier {
 namespace {
@@ -110,10 +111,12 @@ std::vector<Vec4f> read_colors(const PrimitiveData& data) {
   return colors;
 }
 
-MeshDescription read_mesh(const Document& document, const MeshRequest& request, MeshRepairs& repairs) {
-  const PrimitiveData data(document, request.mesh, request.primitive);
+MeshDescription read_mesh(const Document& document, const MeshRequest& request,
+                          const std::vector<Imath::M44d>& node_to_world, MeshRepairs& repairs) {
+  const MeshUse& use = request.use;
+  const PrimitiveData data(document, use.mesh, use.primitive);
   MeshDescription mesh;
-  mesh.name = document.model().meshes[size_t(request.mesh)].name;
+  mesh.name = document.model().meshes[size_t(use.mesh)].name;
   mesh.positions = data.read<Vec3f>("POSITION");
   check_positions(data, mesh.positions);
   mesh.triangles = data.read_triangles();
@@ -121,13 +124,17 @@ MeshDescription read_mesh(const Document& document, const MeshRequest& request, 
     mesh.normals = data.read<Vec3f>("NORMAL");
     repair_normals(mesh, repairs);
     // Without normals a file's tangents are to be ignored (glTF 2.0, 3.7.2.1).
-    if (request.tangents && data.has("TANGENT")) {
+    if (request.tangent_map && data.has("TANGENT")) {
       mesh.tangents = data.read<Vec4f>("TANGENT");
       repair_tangents(mesh, repairs);
     }
   }
   read_texcoords(data, request, mesh, repairs);
   if (data.has("COLOR_0")) mesh.colors = read_colors(data);
+  if (!use.weights.empty()) morph(data, use.weights, mesh);
+  if (use.skin >= 0) skin(data, joint_matrices(document, use.skin, node_to_world), mesh);
+  if (!use.weights.empty() || use.skin >= 0) check_positions(data, mesh.positions);
+  if (request.tangent_map && mesh.tangents.empty()) derive_tangents(mesh, *request.tangent_map);
   return mesh;
 }
 
@@ -156,20 +163,13 @@ std::vector<Notice> MeshRepairs::notices() const {
 }
 
 std::vector<MeshDescription> read_meshes(const Document& document, const std::vector<MeshRequest>& requests,
+                                         const std::vector<Imath::M44d>& node_to_world,
                                          MeshRepairs& repairs) {
   std::vector<MeshDescription> meshes(requests.size());
   std::vector<MeshRepairs> repairs_of(requests.size());
-  std::vector<std::exception_ptr> failures(requests.size());
-  parallel_for(requests.size(), [&](size_t i) {
-    try {
-      meshes[i] = read_mesh(document, requests[i], repairs_of[i]);
-    } catch (...) {
-      failures[i] = std::current_exception();
-    }
+  for_each_in_parallel(requests.size(), [&](size_t i) {
+    meshes[i] = read_mesh(document, requests[i], node_to_world, repairs_of[i]);
   });
-  // The first in the file's order, so that the message does not depend on the threads.
-  for (const auto& failure : failures)
-    if (failure) std::rethrow_exception(failure);
   for (const auto& r : repairs_of) repairs.add(r);
   return meshes;
 }

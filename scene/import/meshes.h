@@ -1,6 +1,10 @@
 #pragma once
 
+#include <ImathMatrix.h>
+
 #include <array>
+#include <compare>
+#include <optional>
 #include <vector>
 
 #include "scene/description.h"
@@ -8,11 +12,19 @@
 
 namespace vernier {
 
-/// One mesh primitive as some node uses it.
-struct MeshRequest {
+/// A mesh primitive in one shape. Nodes that agree in all of this share the triangles.
+struct MeshUse {
   int mesh = 0, primitive = 0;
-  std::array<bool, 2> texcoords{};  ///< TEXCOORD_n that the material reads
-  bool tangents = false;            ///< the material reads tangents
+  int skin = -1;                ///< the mesh is then in world space
+  std::vector<double> weights;  ///< of morph targets
+
+  auto operator<=>(const MeshUse&) const = default;
+};
+
+struct MeshRequest {
+  MeshUse use;
+  std::array<bool, 2> texcoords{};        ///< TEXCOORD_n that the material reads
+  std::optional<TextureUse> tangent_map;  ///< the texture whose axes tangents follow; none: they are not read
 };
 
 /// Data that was put right, in counts over all meshes.
@@ -24,8 +36,9 @@ struct MeshRepairs {
   std::vector<Notice> notices() const;
 };
 
-/// Reads the meshes asked for, in parallel. Throws Error(input) about the first of them that cannot be used.
+/// Reads the meshes asked for, in parallel; `node_to_world` places the joints of skins. Throws Error(input)
+/// about the first mesh that cannot be used.
 std::vector<MeshDescription> read_meshes(const Document& document, const std::vector<MeshRequest>& requests,
-                                         MeshRepairs& repairs);
+                                         const std::vector<Imath::M44d>& node_to_world, MeshRepairs& repairs);
 
 }  // namespace vernier

@@ -1,10 +1,9 @@
 #include "scene/import/nodes.h"
 
-#include <ImathQuat.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace vernier {
 namespace {
@@ -50,33 +49,20 @@ std::vector<int> scene_roots(const Document& document, const std::vector<int>& p
   return roots;
 }
 
-}  // namespace
-
-M44d local_matrix(const tinygltf::Node& node) {
-  M44d matrix;
-  if (node.matrix.size() == 16) {
-    // Columns in the file are rows here.
-    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = node.matrix[size_t(i)];
-    return matrix;
-  }
-  const auto& r = node.rotation;
-  if (r.size() == 4) {
-    const Imath::Quatd rotation(r[3], r[0], r[1], r[2]);
-    if (rotation.length() > 0) matrix = rotation.normalized().toMatrix44();
-  }
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column)
-      if (node.scale.size() == 3) matrix[row][column] *= node.scale[size_t(row)];
-    if (node.translation.size() == 3) matrix[3][row] = node.translation[size_t(row)];
-  }
-  return matrix;
+/// KHR_node_visibility: hides the node and what is below it.
+bool is_hidden(const tinygltf::Node& node) {
+  const auto visibility = node.extensions.find("KHR_node_visibility");
+  if (visibility == node.extensions.end() || !visibility->second.Has("visible")) return false;
+  return !visibility->second.Get("visible").Get<bool>();
 }
 
-NodePlaces place_nodes(const Document& document, const std::vector<M44d>& locals) {
+}  // namespace
+
+NodePlaces place_nodes(const Document& document, const std::vector<NodePose>& poses) {
   const auto& nodes = document.model().nodes;
   const std::vector<int> parents = parents_of(document);
   NodePlaces places;
-  places.to_world = locals;
+  for (const auto& pose : poses) places.to_world.push_back(pose.to_parent());
   std::vector<bool> reached(nodes.size(), false);
   std::vector<int> pending;
   for (size_t root = 0; root < nodes.size(); ++root) {
@@ -87,7 +73,7 @@ NodePlaces place_nodes(const Document& document, const std::vector<M44d>& locals
       pending.pop_back();
       reached[node] = true;
       for (const int child : nodes[node].children) {
-        places.to_world[size_t(child)] = locals[size_t(child)] * places.to_world[node];
+        places.to_world[size_t(child)] *= places.to_world[node];
         pending.push_back(child);
       }
     }
@@ -101,6 +87,7 @@ NodePlaces place_nodes(const Document& document, const std::vector<M44d>& locals
   while (!pending.empty()) {
     const int node = pending.back();
     pending.pop_back();
+    if (is_hidden(nodes[size_t(node)])) continue;
     places.shown.push_back(node);
     const auto& children = nodes[size_t(node)].children;
     pending.insert(pending.end(), children.rbegin(), children.rend());

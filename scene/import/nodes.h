@@ -6,11 +6,9 @@
 
 #include "core/math/transform.h"
 #include "scene/import/document.h"
+#include "scene/import/pose.h"
 
 namespace vernier {
-
-/// A node's own transform, as rows that the axes and the origin map to (Imath multiplies row vectors).
-Imath::M44d local_matrix(const tinygltf::Node& node);
 
 /// Places of all nodes of a file, whether or not a scene shows them.
 struct NodePlaces {
@@ -18,9 +16,9 @@ struct NodePlaces {
   std::vector<int> shown;  ///< nodes of the scene, parents before children
 };
 
-/// Accumulates `locals` (one per node) down the hierarchy, iteratively. Throws Error(input) on a cycle, on a
+/// Accumulates the poses (one per node) down the hierarchy, iteratively. Throws Error(input) on a cycle, on a
 /// node with two parents, and on a scene that lists a child.
-NodePlaces place_nodes(const Document& document, const std::vector<Imath::M44d>& locals);
+NodePlaces place_nodes(const Document& document, const std::vector<NodePose>& poses);
 
 /// Throws Error(input) about `place` when the matrix does not fit in floats or is not affine.
 Transform to_transform(const Document& document, const Imath::M44d& matrix, const std::string& place);

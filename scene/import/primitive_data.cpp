@@ -10,7 +10,9 @@
 namespace vernier {
 namespace {
 
-/// Indices that a primitive draws.
+const char* const draco_extension = "KHR_draco_mesh_compression";
+
+/// Number of indices that a primitive draws.
 size_t index_count(const Document& document, const tinygltf::Primitive& primitive) {
   const int accessor = primitive.indices >= 0 ? primitive.indices : primitive.attributes.at("POSITION");
   return document.model().accessors[size_t(accessor)].count;
@@ -33,7 +35,9 @@ bool has_surface(const Document& document, const tinygltf::Primitive& primitive)
 PrimitiveData::PrimitiveData(const Document& document, int mesh, int primitive)
     : document_(document),
       primitive_(document.model().meshes[size_t(mesh)].primitives[size_t(primitive)]),
-      place_(fmt::format("/meshes/{}/primitives/{}", mesh, primitive)) {}
+      place_(fmt::format("/meshes/{}/primitives/{}", mesh, primitive)) {
+  if (primitive_.extensions.count(draco_extension)) draco_ = decode_draco(document, primitive_, place_);
+}
 
 bool PrimitiveData::has(const std::string& attribute) const {
   return primitive_.attributes.count(attribute) > 0;
@@ -48,34 +52,72 @@ int PrimitiveData::components(const std::string& attribute) const {
 }
 
 size_t PrimitiveData::vertex_count() const {
-  return locate_elements(document_, accessor_of("POSITION")).count;
+  const int accessor = accessor_of("POSITION");
+  // Data out of compression has been compared with the accessor's count; other data is bounded by its buffer
+  // view.
+  if (draco_ && draco_->attributes.count("POSITION"))
+    return document_.model().accessors[size_t(accessor)].count;
+  return locate_elements(document_, accessor).count;
 }
 
 void PrimitiveData::read_into(const std::string& attribute, int components, float* out) const {
-  const size_t count = document_.model().accessors[size_t(accessor_of(attribute))].count;
-  if (count != vertex_count())
-    fail("/attributes/" + attribute, fmt::format("{} values for {} positions", count, vertex_count()));
-  read_floats(document_, accessor_of(attribute), components, out);
+  const auto& accessor = document_.model().accessors[size_t(accessor_of(attribute))];
+  if (accessor.count != vertex_count())
+    fail("/attributes/" + attribute,
+         fmt::format("{} values for {} positions", accessor.count, vertex_count()));
+  if (component_count(accessor) != components)
+    fail("/attributes/" + attribute,
+         fmt::format("expected {} components, found {}", components, component_count(accessor)));
+  if (!draco_ || !draco_->attributes.count(attribute)) {
+    read_floats(document_, accessor_of(attribute), components, out);
+    return;
+  }
+  ElementArray elements;
+  elements.bytes = draco_->attributes.at(attribute).data();
+  elements.count = accessor.count;
+  elements.component_type = accessor.componentType;
+  elements.components = components;
+  elements.normalized = accessor.normalized;
+  elements.stride = component_size(accessor.componentType) * size_t(components);
+  convert_to_floats(elements, out);
 }
 
 std::vector<Triangle> PrimitiveData::read_triangles() const {
-  const size_t count = index_count(document_, primitive_);
-  const bool list = primitive_.mode == TINYGLTF_MODE_TRIANGLES;
-  std::vector<Triangle> triangles(list ? count / 3 : count - 2);
-  std::vector<uint32_t> indices;
-  const bool in_place = list && count % 3 == 0;
-  if (!in_place) indices.resize(count);
-  uint32_t* target = in_place ? triangles.data()->data() : indices.data();
-  if (primitive_.indices >= 0)
-    read_indices(document_, primitive_.indices, target);
-  else
-    std::iota(target, target + count, 0u);
-  check_indices(target, count);
-  if (in_place) return triangles;
+  const bool list = primitive_.mode == TINYGLTF_MODE_TRIANGLES || draco_;
+  if (list && !draco_ && primitive_.indices >= 0 && index_count(document_, primitive_) % 3 == 0) {
+    // By far the most common case, without a copy.
+    std::vector<Triangle> triangles(locate_elements(document_, primitive_.indices).count / 3);
+    read_indices(document_, primitive_.indices, triangles.data()->data());
+    check_indices(triangles.data()->data(), triangles.size() * 3);
+    return triangles;
+  }
+  const std::vector<uint32_t> indices = drawn_indices();
+  check_indices(indices.data(), indices.size());
+  std::vector<Triangle> triangles(list ? indices.size() / 3 : indices.size() - 2);
   for (size_t i = 0; i < triangles.size(); ++i)
     triangles[i] = list ? Triangle{indices[3 * i], indices[3 * i + 1], indices[3 * i + 2]}
                         : connected_triangle(primitive_.mode, indices, i);
   return triangles;
+}
+
+std::vector<uint32_t> PrimitiveData::drawn_indices() const {
+  if (draco_) return draco_->indices;
+  std::vector<uint32_t> indices;
+  if (primitive_.indices >= 0) {
+    indices.resize(locate_elements(document_, primitive_.indices).count);
+    read_indices(document_, primitive_.indices, indices.data());
+  } else {
+    indices.resize(vertex_count());
+    std::iota(indices.begin(), indices.end(), 0u);
+  }
+  return indices;
+}
+
+void PrimitiveData::check_target(size_t target, const std::string& attribute, int accessor) const {
+  const size_t count = document_.model().accessors[size_t(accessor)].count;
+  if (count != vertex_count())
+    fail(fmt::format("/targets/{}/{}", target, attribute),
+         fmt::format("{} values for {} positions", count, vertex_count()));
 }
 
 void PrimitiveData::check_indices(const uint32_t* indices, size_t count) const {
@@ -83,10 +125,9 @@ void PrimitiveData::check_indices(const uint32_t* indices, size_t count) const {
   uint32_t largest = 0;
   for (size_t i = 0; i < count; ++i) largest = std::max(largest, indices[i]);
   if (largest < vertices) return;
-  const size_t first =
-      size_t(std::find_if(indices, indices + count, [&](uint32_t i) { return i >= vertices; }) - indices);
-  fail("/indices", fmt::format("index {} at position {} is out of range, there are {} vertices",
-                               indices[first], first, vertices));
+  const auto* first = std::find_if(indices, indices + count, [&](uint32_t i) { return i >= vertices; });
+  fail("/indices", fmt::format("index {} at position {} is out of range, there are {} vertices", *first,
+                               first - indices, vertices));
 }
 
 void PrimitiveData::fail(const std::string& place, const std::string& problem) const {

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "scene/description.h"
 #include "scene/import/document.h"
+#include "scene/import/draco.h"
 
 namespace vernier {
 
@@ -29,6 +31,16 @@ class PrimitiveData {
     return values;
   }
 
+  size_t target_count() const { return primitive_.targets.size(); }
+  /// A morph target's values for an attribute; empty when it has none. Throws Error(input) as read() does.
+  template <typename V>
+  std::vector<V> read_target(size_t target, const std::string& attribute) const {
+    const auto found = primitive_.targets[target].find(attribute);
+    if (found == primitive_.targets[target].end()) return {};
+    check_target(target, attribute, found->second);
+    return read_vectors<V>(document_, found->second);
+  }
+
   /// Triangles of lists, strips and fans, counter-clockwise as the file winds them; every index is in range.
   std::vector<Triangle> read_triangles() const;
 
@@ -41,12 +53,16 @@ class PrimitiveData {
   static constexpr size_t padding = 2;
 
   int accessor_of(const std::string& attribute) const;
+  /// Indices that the primitive draws, whatever its mode.
+  std::vector<uint32_t> drawn_indices() const;
   void read_into(const std::string& attribute, int components, float* out) const;
+  void check_target(size_t target, const std::string& attribute, int accessor) const;
   void check_indices(const uint32_t* indices, size_t count) const;
 
   const Document& document_;
   const tinygltf::Primitive& primitive_;
   std::string place_;
+  std::optional<DracoData> draco_;
 };
 
 /// Whether the primitive has a surface: triangles, strips or fans of at least one triangle, with positions.

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <cstring>
-#include <exception>
 #include <map>
 
 #include "core/base/error.h"
-#include "core/base/parallel.h"
 #include "core/image/image_io.h"
+#include "scene/import/ordered_parallel.h"
 
 namespace vernier {
 namespace {
@@ -69,16 +68,7 @@ void decode_missing(const Document& document, const std::vector<int>& indices,
   for (const int index : indices)
     if (const auto [image, is_new] = images.try_emplace(index); is_new)
       jobs.emplace_back(index, &image->second);
-  std::vector<std::exception_ptr> failures(jobs.size());
-  parallel_for(jobs.size(), [&](size_t i) {
-    try {
-      *jobs[i].second = decode(document, jobs[i].first);
-    } catch (...) {
-      failures[i] = std::current_exception();
-    }
-  });
-  for (const auto& failure : failures)
-    if (failure) std::rethrow_exception(failure);
+  for_each_in_parallel(jobs.size(), [&](size_t i) { *jobs[i].second = decode(document, jobs[i].first); });
 }
 
 /// Decodes each texture's best image, and the next best where that fails.

@@ -1,0 +1,35 @@
+#include "scene/import/pose.h"
+
+namespace vernier {
+
+Imath::M44d NodePose::to_parent() const {
+  if (matrix) return *matrix;
+  Imath::M44d m = rotation.toMatrix44();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) m[row][column] *= scale[row];
+    m[3][row] = translation[row];
+  }
+  return m;
+}
+
+std::vector<NodePose> rest_pose(const Document& document) {
+  std::vector<NodePose> poses;
+  for (const auto& node : document.model().nodes) {
+    NodePose& pose = poses.emplace_back();
+    const auto& r = node.rotation;
+    if (node.matrix.size() == 16) {
+      pose.matrix.emplace();
+      // Columns in the file are rows here.
+      for (int i = 0; i < 16; ++i) (*pose.matrix)[i / 4][i % 4] = node.matrix[size_t(i)];
+    }
+    if (r.size() == 4) pose.rotation = Imath::Quatd(r[3], r[0], r[1], r[2]).normalized();
+    for (int i = 0; i < 3; ++i) {
+      if (node.translation.size() == 3) pose.translation[i] = node.translation[size_t(i)];
+      if (node.scale.size() == 3) pose.scale[i] = node.scale[size_t(i)];
+    }
+    pose.weights = node.weights;
+  }
+  return poses;
+}
+
+}  // namespace vernier

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <ImathMatrix.h>
+#include <ImathQuat.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/import/document.h"
+
+namespace vernier {
+
+/// Where a node is in its parent, and how far its mesh is morphed.
+struct NodePose {
+  std::optional<Imath::M44d> matrix;  ///< instead of the three below
+  Imath::V3d translation{0, 0, 0}, scale{1, 1, 1};
+  Imath::Quatd rotation;        ///< unit
+  std::vector<double> weights;  ///< of morph targets; empty: the mesh's own
+
+  /// As Imath multiplies: row vectors, so the rows are what the axes and the origin map to.
+  Imath::M44d to_parent() const;
+};
+
+/// Poses of all nodes as the file gives them.
+std::vector<NodePose> rest_pose(const Document& document);
+
+/// Sets what the animation animates to its values at `time` seconds; before its first key and after its last
+/// those hold. `animation` is a name or an index, empty for the first. Throws Error(usage) when there is no
+/// such one.
+void apply_animation(const Document& document, const std::string& animation, double time,
+                     std::vector<NodePose>& poses);
+
+}  // namespace vernier
