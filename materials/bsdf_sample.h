@@ -30,7 +30,7 @@ struct BsdfSample {
   float eta = 1;    ///< index of the side entered over that left; 1 when reflected or thin
 
   bool is_delta() const { return lobe == Lobe::delta; }
-  bool transmitted() const { return wi.z < 0; }
+  bool is_transmitted() const { return wi.z < 0; }
 };
 
 /// The mirror and refraction directions of a surface, each with the fraction of light that goes that way when the
