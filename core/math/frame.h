@@ -22,7 +22,9 @@ struct Frame {
 
   /// Frame about n whose x axis lies in the half-plane of t; as from_normal when t is parallel to n or zero.
   static Frame from_normal_tangent(const Vec3f& n, const Vec3f& t) {
-    const Vec3f projected = t - dot(t, n) * n;
+    const Vec3f once = t - dot(t, n) * n;
+    // Once more: what rounding left along n is not small beside a t that is nearly parallel to n.
+    const Vec3f projected = once - dot(once, n) * n;
     const float length2 = length_squared(projected);
     if (!(length2 > 1e-12f * length_squared(t))) return from_normal(n);
     const Vec3f x = projected * (1 / std::sqrt(length2));

@@ -1,0 +1,73 @@
+#include "core/image/film.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace vernier {
+namespace {
+
+TEST(Film, MeanWeighsEverySampleAlike) {
+  Film film(2, 1, 2);
+  EXPECT_TRUE(film.add(0, 0, 0, {1, 2, 3}));
+  EXPECT_TRUE(film.add(0, 0, 0, {2, 4, 6}));
+  EXPECT_TRUE(film.add(0, 0, 1, {6, 0, 0}));
+  EXPECT_EQ(film.samples(0, 0), 3);
+  EXPECT_EQ(film.group_samples(0, 0, 0), 2);
+  EXPECT_EQ(film.group_samples(0, 0, 1), 1);
+  EXPECT_EQ(film.group_mean(0, 0, 0), Vec3d(1.5, 3, 4.5));
+  EXPECT_EQ(film.group_mean(0, 0, 1), Vec3d(6, 0, 0));
+  // Not the mean of the groups' means, which would be 3.75, 1.5, 2.25.
+  EXPECT_EQ(rgb_at(film.mean(), 0, 0), Rgb(3, 2, 3));
+}
+
+TEST(Film, PixelWithoutSamplesIsBlack) {
+  const Film film(3, 2, 4);
+  EXPECT_EQ(film.samples(2, 1), 0);
+  EXPECT_EQ(film.group_mean(2, 1, 3), Vec3d(0, 0, 0));
+  const Image mean = film.mean();
+  EXPECT_EQ(mean.width, 3);
+  EXPECT_EQ(mean.height, 2);
+  EXPECT_EQ(mean.channels, 3);
+  for (const float value : mean.values) EXPECT_EQ(value, 0);
+}
+
+TEST(Film, PixelsAndGroupsAreApart) {
+  Film film(3, 2, 2);
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 3; ++x)
+      for (int g = 0; g < 2; ++g) EXPECT_TRUE(film.add(x, y, g, Rgb(float(x), float(y), float(g))));
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 3; ++x) {
+      for (int g = 0; g < 2; ++g) EXPECT_EQ(film.group_mean(x, y, g), Vec3d(x, y, g));
+      EXPECT_EQ(rgb_at(film.mean(), x, y), Rgb(float(x), float(y), 0.5f));
+    }
+}
+
+TEST(Film, BadSamplesAreRefusedAndChangeNothing) {
+  const float inf = std::numeric_limits<float>::infinity(), nan = std::nanf("");
+  Film film(1, 1);
+  EXPECT_TRUE(film.add(0, 0, 0, {1, 1, 1}));
+  for (const float bad : {inf, -inf, nan, -1.f, -1e-30f})
+    for (int c = 0; c < 3; ++c) {
+      Rgb sample(1, 1, 1);
+      sample[c] = bad;
+      EXPECT_FALSE(film.add(0, 0, 0, sample)) << bad << " in channel " << c;
+    }
+  EXPECT_EQ(film.samples(0, 0), 1);
+  EXPECT_EQ(rgb_at(film.mean(), 0, 0), Rgb(1, 1, 1));
+  EXPECT_TRUE(film.add(0, 0, 0, {0, 0, 0}));
+  EXPECT_TRUE(film.add(0, 0, 0, {std::numeric_limits<float>::max(), 0, 0}));
+}
+
+TEST(Film, SumsInDouble) {
+  Film film(1, 1);
+  EXPECT_TRUE(film.add(0, 0, 0, {1e8f, 1e8f, 1e8f}));
+  constexpr int count = 100'000;
+  // In float each of these would be lost beside 1e8.
+  for (int i = 0; i < count; ++i) EXPECT_TRUE(film.add(0, 0, 0, {1, 1, 1}));
+  EXPECT_DOUBLE_EQ(film.group_mean(0, 0, 0).x, (1e8 + count) / (count + 1));
+}
+
+}  // namespace
+}  // namespace vernier

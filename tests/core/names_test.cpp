@@ -1,0 +1,49 @@
+#include "core/base/names.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+
+namespace vernier {
+namespace {
+
+const std::vector<std::string> colours{"red", "green", "blue"};
+
+TEST(Names, NearestByEdits) {
+  EXPECT_EQ(nearest_name("red", colours), "red");
+  EXPECT_EQ(nearest_name("gren", colours), "green");
+  EXPECT_EQ(nearest_name("grean", colours), "green");
+  EXPECT_EQ(nearest_name("bleu", colours), "blue");
+  EXPECT_EQ(nearest_name("xyzzy", colours), "");
+  EXPECT_EQ(nearest_name("red", {}), "");
+  // A long name may differ in a third of its letters.
+  EXPECT_EQ(nearest_name("whittedintegratxr", std::vector<std::string>{"whitted_integrator"}),
+            "whitted_integrator");
+}
+
+TEST(Names, MessageSuggestsAndLists) {
+  EXPECT_EQ(unknown_name_message("colour", "gren", colours),
+            "unknown colour 'gren'; did you mean 'green'? There are: red, green, blue");
+  EXPECT_EQ(unknown_name_message("colour", "xyzzy", colours),
+            "unknown colour 'xyzzy'; There are: red, green, blue");
+  EXPECT_EQ(unknown_name_message("colour", "x", {}), "unknown colour 'x'; There are: none");
+}
+
+TEST(Names, FindInTable) {
+  struct Entry {
+    std::string_view name;
+    int value;
+  };
+  const std::vector<Entry> table{{"one", 1}, {"two", 2}};
+  EXPECT_EQ(find_by_name(table, "number", "two").value, 2);
+  try {
+    find_by_name(table, "number", "tow");
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
+    EXPECT_STREQ(error.what(), "unknown number 'tow'; did you mean 'two'? There are: one, two");
+  }
+}
+
+}  // namespace
+}  // namespace vernier
