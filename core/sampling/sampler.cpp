@@ -8,11 +8,13 @@ namespace {
 constexpr int dimensions = 8;  // of one block
 constexpr int index_bits = 32;
 
-constexpr uint32_t reverse_bits(uint32_t v) {
+template <typename Word>
+constexpr Word reverse_bits(Word v) {
   v = ((v >> 1) & 0x55555555u) | ((v & 0x55555555u) << 1);
   v = ((v >> 2) & 0x33333333u) | ((v & 0x33333333u) << 2);
   v = ((v >> 4) & 0x0f0f0f0fu) | ((v & 0x0f0f0f0fu) << 4);
-  return __builtin_bswap32(v);
+  v = ((v >> 8) & 0x00ff00ffu) | ((v & 0x00ff00ffu) << 8);
+  return (v >> 16) | (v << 16);
 }
 
 /// Primitive polynomial (degree, inner coefficients) and initial direction numbers of a Sobol' dimension
@@ -51,10 +53,13 @@ constexpr std::array<uint32_t, index_bits> direction_numbers(int dimension) {
   return v;
 }
 
-/// Generator matrices applied four index bits at a time. Both index and point are bit-reversed, which is the
-/// form that owen_hash takes.
+/// Four numbers, one a dimension (vector extension of GCC and Clang).
+using Lanes = uint32_t __attribute__((vector_size(16)));
+
+/// Generator matrices applied four index bits at a time, four dimensions at once. Both index and point are
+/// bit-reversed, which is the form that owen_hash takes.
 struct SobolTables {
-  uint32_t nibble[dimensions][8][16];
+  Lanes nibble[dimensions / 4][8][16];
 };
 
 constexpr SobolTables make_tables() {
@@ -62,21 +67,24 @@ constexpr SobolTables make_tables() {
   for (int d = 0; d < dimensions; ++d) {
     const auto v = direction_numbers(d);
     for (int position = 0; position < 8; ++position)
-      for (uint32_t value = 0; value < 16; ++value)
+      for (uint32_t value = 0; value < 16; ++value) {
+        uint32_t sum = 0;
         for (int bit = 0; bit < 4; ++bit)
-          if ((value >> bit) & 1)
-            tables.nibble[d][position][value] ^= reverse_bits(v[31 - (4 * position + bit)]);
+          if ((value >> bit) & 1) sum ^= reverse_bits(v[31 - (4 * position + bit)]);
+        tables.nibble[d / 4][position][value][d % 4] = sum;
+      }
   }
   return tables;
 }
-constexpr SobolTables tables = make_tables();
+const SobolTables tables = make_tables();
 
-/// Random permutation in which each bit depends on the seed and the lower bits only: on a reversed number, a
-/// nested uniform (Owen) scramble (Laine and Karras 2011; constants of Vegdahl 2021 as in pbrt-v4).
-uint32_t owen_hash(uint32_t v, uint32_t seed) {
+/// Random permutation in which each bit depends on the seed and the lower bits only: on a reversed number, a nested
+/// uniform (Owen) scramble (Laine and Karras 2011; constants of Vegdahl 2021 as in pbrt-v4).
+template <typename Word>
+Word owen_hash(Word v, Word seed) {
   v ^= v * 0x3d20adeau;
   v += seed;
-  v *= (seed >> 16) | 1;
+  v *= (seed >> 16) | 1u;
   v ^= v * 0x05526c56u;
   v ^= v * 0x53a22864u;
   return v;
@@ -97,21 +105,15 @@ void Sampler::start_block(uint32_t block) {
   dimension_ = 0;
 }
 
-float Sampler::next1() {
+void Sampler::make_lanes() {
   assert(dimension_ < dimensions);
-  const auto& nibble = tables.nibble[dimension_];
-  uint32_t reversed_point = 0;
+  const auto& nibble = tables.nibble[dimension_ / lanes];
+  Lanes reversed_point{};
   for (int position = 0; position < 8; ++position)
     reversed_point ^= nibble[position][(shuffled_ >> (4 * position)) & 15];
-  ++dimension_;
-  const uint32_t point = reverse_bits(owen_hash(reversed_point, block_hash_ + 0x9e3779b9u * dimension_));
-  return static_cast<float>(point >> 8) * 0x1p-24f;
-}
-
-Vec2f Sampler::next2() {
-  const float x = next1();
-  const float y = next1();
-  return {x, y};
+  const Lanes seeds = (Lanes{1, 2, 3, 4} + dimension_) * 0x9e3779b9u + block_hash_;
+  const Lanes point = reverse_bits(owen_hash(reversed_point, seeds));
+  for (uint32_t lane = 0; lane < lanes; ++lane) values_[lane] = float(point[lane] >> 8) * 0x1p-24f;
 }
 
 }  // namespace vernier

@@ -23,15 +23,26 @@ class Sampler {
   /// Moves to the first dimension of block `block`.
   void start_block(uint32_t block);
   /// The next number, or the next two, of the block, in [0, 1). At most eight numbers a block.
-  float next1();
-  Vec2f next2();
+  float next1() {
+    if (dimension_ % lanes == 0) make_lanes();
+    return values_[dimension_++ % lanes];
+  }
+  Vec2f next2() {
+    const float x = next1();
+    const float y = next1();
+    return {x, y};
+  }
 
  private:
+  static constexpr uint32_t lanes = 4;  ///< dimensions made at once
+  void make_lanes();
+
   uint32_t stream_hash_;
   uint32_t reversed_index_;
   uint32_t block_hash_ = 0;
   uint32_t shuffled_ = 0;
   uint32_t dimension_ = 0;
+  std::array<float, lanes> values_;  ///< of the lanes that dimension_ is among
 };
 
 /// 64 to 32 bits, every input bit affecting every output bit (the finaliser of SplitMix64, Steele et al.
