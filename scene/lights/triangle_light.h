@@ -17,12 +17,15 @@ class TriangleLight : public Light {
   std::optional<LightBounds> bounds() const override;
 
  private:
-  Rgb emission(const SurfacePoint& point, bool front) const;
+  Rgb emission(const Vec2f& barycentrics, bool front) const;
   float mean_power() const;
 
   const SceneGeometry* geometry_;
   const Material* material_;
   uint32_t instance_, primitive_;
+  std::array<Vec3f, 3> corners_;  ///< world
+  Vec3f normal_;                  ///< of the front
+  Vec3f error_;                   ///< bound on the rounding of any point between the corners
   float area_, power_;
 };
 
