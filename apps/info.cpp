@@ -3,14 +3,13 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.h"
+#include "apps/flags.h"
 #include "apps/messages.h"
 #include "apps/notice_log.h"
 #include "apps/scene_json.h"
 #include "apps/scene_summary.h"
-#include "core/base/error.h"
 #include "core/base/quantities.h"
 #include "scene/geometry.h"
-#include "scene/import/import.h"
 
 namespace vernier::apps {
 namespace {
@@ -19,7 +18,8 @@ using Json = nlohmann::ordered_json;
 
 struct InfoFlags {
   std::string scene;
-  bool json = false, strict = false;
+  ImportOptions import;
+  bool json = false;
 };
 
 /// "kind perspective, vertical_degrees 40": the entries of an object that differ from `defaults`.
@@ -81,9 +81,8 @@ void print_text(const Json& scene, const SceneCounts& counts, const Bounds& boun
 }
 
 ExitCode run_info(const InfoFlags& flags) {
-  if (flags.scene.empty())
-    throw Error(ErrorKind::usage, "which scene? Give a .gltf or .glb file; see vernier info --help");
-  SceneDescription scene = import_scene(flags.scene, {flags.strict});
+  require_scene(flags.scene, "info");
+  SceneDescription scene = import_scene(flags.scene, flags.import);
   const SceneCounts counts = count(scene);
   const Bounds bounds = SceneGeometry(std::move(scene.meshes), scene.instances).bounds();
   const Json json = scene_json(scene, counts, bounds);
@@ -101,9 +100,8 @@ ExitCode run_info(const InfoFlags& flags) {
 void register_info(Program& program) {
   CLI::App* command = program.app.add_subcommand("info", "Say what a scene holds and how it is honoured");
   auto flags = std::make_shared<InfoFlags>();
-  command->add_option("SCENE", flags->scene, "glTF 2.0 scene (.gltf, .glb)")->type_name("");
+  add_scene_flags(*command, flags->scene, flags->import);
   command->add_flag("--json", flags->json, "as JSON on standard output");
-  command->add_flag("--strict", flags->strict, "refuse a scene that is not honoured exactly");
   command->callback([&program, flags] { program.run = [flags] { return run_info(*flags); }; });
 }
 

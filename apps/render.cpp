@@ -16,7 +16,6 @@
 #include "core/image/display.h"
 #include "core/image/image_io.h"
 #include "scene/camera.h"
-#include "scene/import/import.h"
 #include "scene/scene.h"
 
 namespace vernier::apps {
@@ -73,7 +72,7 @@ void write_pictures(const RenderRequest& request, const Image& picture, const Me
 /// The scene to render, and what the report says of it.
 SceneDescription load_scene(const RenderRequest& request, RenderReport& report) {
   const RenderFlags& flags = request.flags;
-  SceneDescription description = import_scene(flags.scene, {flags.strict});
+  SceneDescription description = import_scene(flags.scene, flags.import);
   if (request.environment) description.environment = request.environment;
   report.scene_file = flags.scene;
   report.scene_hash = description.hash;

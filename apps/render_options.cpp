@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "apps/flags.h"
 #include "core/base/error.h"
 #include "core/base/names.h"
 #include "core/base/text_file.h"
@@ -20,85 +21,74 @@ namespace {
 /// Of a film with one group, and the picture made from it.
 constexpr double film_bytes_per_pixel = 4 * sizeof(double) + 3 * sizeof(float);
 
-/// A number that is finite and at least `least`.
-CLI::Validator finite_number(double least = -std::numeric_limits<double>::max()) {
-  const auto check = [least](std::string& text) {
-    double value = 0;
-    if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value))
-      return fmt::format("'{}' is not a finite number", text);
-    return value < least ? fmt::format("{} is below {}", text, least) : std::string();
-  };
-  return {check, "NUMBER"};
-}
-
 void add_quality_flags(CLI::App& command, RenderFlags& flags) {
-  auto* group = command.add_option_group("Picture and effort");
-  group->add_option("--spp", flags.spp, "samples a pixel (64 unless --time is given)")
-      ->check(CLI::Range(1, 1 << 30))
+  command.option_defaults()->group("Picture and effort");
+  command.add_option("--spp", flags.spp, "samples a pixel (64 unless --time is given)")
+      ->check(whole_number(1, 1 << 30))
       ->type_name("N");
-  group->add_option("--time", flags.time, "stop rendering after this long: 90s, 10m, 1.5h")
+  command.add_option("--time", flags.time, "stop rendering after this long: 90s, 10m, 1.5h")
       ->type_name("TIME");
-  group
-      ->add_option("--size,--resolution", flags.size, "of the picture (the camera's shape, 1280 pixels long)")
+  command
+      .add_option("--size,--resolution", flags.size, "of the picture (the camera's shape, 1280 pixels long)")
       ->type_name("WxH");
-  group->add_option("--crop", flags.crop, "render only this part")->type_name("WxH+X+Y");
-  group->add_option("--camera", flags.camera, "of the scene, by name or number (the first)")
+  command.add_option("--crop", flags.crop, "render only this part")->type_name("WxH+X+Y");
+  command.add_option("--camera", flags.camera, "of the scene, by name or number (the first)")
       ->type_name("NAME|N");
-  group->add_option("--seed", flags.seed, "of the random numbers")->type_name("N")->capture_default_str();
-  group->add_option("-t,--threads,--nthreads", flags.threads, "0: all of the machine's")
-      ->check(CLI::Range(0, 4096))
+  command.add_option("--seed", flags.seed, "of the random numbers")->type_name("N")->capture_default_str();
+  command.add_option("-t,--threads,--nthreads", flags.threads, "0: all of the machine's")
+      ->check(whole_number(0, 4096))
       ->type_name("N")
       ->capture_default_str();
 }
 
 void add_integrator_flags(CLI::App& command, RenderFlags& flags) {
-  auto* group = command.add_option_group("Light transport");
+  command.option_defaults()->group("Light transport");
   IntegratorOptions& options = flags.integrator_options;
-  group->add_option("--integrator", flags.integrator, "how light is computed; 'help' lists them")
+  command.add_option("--integrator", flags.integrator, "how light is computed; 'help' lists them")
       ->type_name("NAME")
       ->capture_default_str();
-  group->add_option("--show", flags.show, "raycast: what to show; 'help' lists it")->type_name("NAME");
-  group->add_option("--max-depth", options.max_depth, "path vertices after the camera")
-      ->check(CLI::Range(1, 65536))
+  command.add_option("--show", flags.show, "raycast: what to show; 'help' lists it")->type_name("NAME");
+  command.add_option("--max-depth", options.max_depth, "path vertices after the camera")
+      ->check(whole_number(1, 65536))
       ->type_name("N")
       ->capture_default_str();
-  group->add_option("--ambient", options.ambient, "whitted: radiance that reaches everything")
-      ->check(finite_number(0))
+  command.add_option("--ambient", options.ambient, "whitted: radiance that reaches everything")
+      ->check(real_number(0, 1e30))
       ->type_name("L")
       ->capture_default_str();
-  group->add_option("--cutoff", options.cutoff, "whitted: smallest contribution that is still traced")
-      ->check(finite_number(0))
+  command.add_option("--cutoff", options.cutoff, "whitted: smallest contribution that is still traced")
+      ->check(real_number(0, 1e30))
       ->type_name("X")
       ->capture_default_str();
-  group->add_option("--accelerator", flags.accelerator, "ray query structure; 'help' lists them")
+  command.add_option("--accelerator", flags.accelerator, "ray query structure; 'help' lists them")
       ->type_name("NAME");
-  group->add_option("--env", flags.environment, "latitude-longitude picture of the surroundings (HDR, EXR)")
+  command.add_option("--env", flags.environment, "latitude-longitude picture of the surroundings (HDR, EXR)")
       ->type_name("FILE");
-  group->add_option("--env-rotate", flags.environment_rotate, "degrees counter-clockwise seen from above")
-      ->check(finite_number())
+  command.add_option("--env-rotate", flags.environment_rotate, "degrees counter-clockwise seen from above")
+      ->check(real_number(-1e6, 1e6))
       ->type_name("DEG");
-  group->add_option("--env-scale", flags.environment_scale, "multiplies its radiance")
-      ->check(finite_number(0))
+  command.add_option("--env-scale", flags.environment_scale, "multiplies its radiance")
+      ->check(real_number(0, 1e30))
       ->type_name("S");
 }
 
 void add_output_flags(CLI::App& command, RenderFlags& flags) {
-  auto* group = command.add_option_group("Output");
-  group->add_option("--exposure", flags.display.exposure, "stops, for PNG and JPEG")
-      ->check(finite_number())
+  command.option_defaults()->group("Output");
+  command.add_option("--exposure", flags.display.exposure, "stops, for PNG and JPEG")
+      ->check(real_number(-100, 100))
       ->type_name("EV");
-  group->add_option("--view", flags.display.view, "display view for PNG and JPEG; 'help' lists them")
+  command.add_option("--view", flags.display.view, "display view for PNG and JPEG; 'help' lists them")
       ->type_name("NAME");
-  group->add_option("--ocio", flags.display.config, "OpenColorIO config ($OCIO, else a built-in one)")
+  command.add_option("--ocio", flags.display.config, "OpenColorIO config ($OCIO, else a built-in one)")
       ->type_name("FILE");
-  group->add_option("--stats", flags.stats, "write what was measured as JSON (docs/stats.md)")
+  command.add_option("--stats", flags.stats, "write what was measured as JSON (docs/stats.md)")
       ->type_name("FILE");
-  group->add_option("--progress", flags.progress, "bar, lines, json or none (bar on a terminal, else lines)")
+  command
+      .add_option("--progress", flags.progress, "bar, lines, json or none (bar on a terminal, else lines)")
       ->type_name("KIND")
       ->capture_default_str();
-  group->add_flag("-q,--quiet", flags.quiet, "say nothing but errors");
-  group->add_flag("-v,--verbose", flags.verbose, "say more");
-  group->add_flag("--strict", flags.strict, "refuse a scene that is not honoured exactly");
+  command.add_flag("-q,--quiet", flags.quiet, "say nothing but errors");
+  command.add_flag("-v,--verbose", flags.verbose, "say more");
 }
 
 template <typename Table>
@@ -185,12 +175,12 @@ std::shared_ptr<const EnvironmentDescription> read_environment(const RenderFlags
 }  // namespace
 
 void add_render_flags(CLI::App& command, RenderFlags& flags) {
-  command.add_option("SCENE", flags.scene, "glTF 2.0 scene (.gltf, .glb)")->type_name("");
   command
       .add_option("-o,--output", flags.outputs,
                   "picture: .exr (scene-linear), .png or .jpg (for display); may be given more than once")
       ->type_name("FILE")
       ->allow_extra_args(false);
+  add_scene_flags(command, flags.scene, flags.import);
   add_quality_flags(command, flags);
   add_integrator_flags(command, flags);
   add_output_flags(command, flags);
@@ -231,8 +221,7 @@ bool print_requested_list(const RenderFlags& flags) {
 }
 
 RenderRequest check_render_flags(const RenderFlags& flags) {
-  if (flags.scene.empty())
-    throw Error(ErrorKind::usage, "which scene? Give a .gltf or .glb file; see vernier render --help");
+  require_scene(flags.scene, "render");
   if (flags.outputs.empty())
     throw Error(ErrorKind::usage,
                 "where to? Give -o FILE with .exr, .png or .jpg; see vernier render --help");

@@ -11,6 +11,7 @@
 #include "integrators/integrator.h"
 #include "integrators/render.h"
 #include "scene/description.h"
+#include "scene/import/import.h"
 
 namespace vernier::apps {
 
@@ -19,6 +20,7 @@ enum class ProgressMode { automatic, bar, lines, json, none };
 /// The flags of `vernier render`, as typed.
 struct RenderFlags {
   std::string scene;
+  ImportOptions import;
   std::vector<std::string> outputs;
 
   std::string integrator = "path";
@@ -39,7 +41,7 @@ struct RenderFlags {
   DisplayOptions display;
   std::string progress = "auto";
   std::string stats;
-  bool quiet = false, verbose = false, strict = false;
+  bool quiet = false, verbose = false;
 };
 
 /// The flags after everything that can be checked without reading a scene has been checked.

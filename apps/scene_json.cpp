@@ -1,5 +1,7 @@
 #include "apps/scene_json.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -13,20 +15,15 @@ using Json = nlohmann::ordered_json;
 
 double degrees(float radians) { return double(radians) * 180 / std::numbers::pi; }
 
-Json vector_json(const Vec3f& v) { return {v.x, v.y, v.z}; }
-
-/// JSON has no infinity: null stands for it.
-Json finite_or_null(float value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json camera_json(const CameraDescription& camera) {
   const bool perspective = camera.kind == CameraDescription::Kind::perspective;
   Json json = {{"name", camera.name}, {"kind", perspective ? "perspective" : "orthographic"}};
   if (perspective) {
-    json["vertical_degrees"] = degrees(camera.yfov);
-    if (camera.aspect > 0) json["aspect"] = camera.aspect;
+    json["vertical_degrees"] = number_json(degrees(camera.yfov));
+    if (camera.aspect > 0) json["aspect"] = number_json(camera.aspect);
   } else {
-    json["half_width"] = camera.xmag;
-    json["half_height"] = camera.ymag;
+    json["half_width"] = number_json(camera.xmag);
+    json["half_height"] = number_json(camera.ymag);
   }
   json["position"] = vector_json(camera.to_world.origin);
   json["direction"] = vector_json(-camera.to_world.z);
@@ -48,43 +45,15 @@ std::string_view name(PunctualLightDescription::Kind kind) {
 Json light_json(const PunctualLightDescription& light) {
   Json json = {{"name", light.name},
                {"kind", name(light.kind)},
-               {"color", {light.color.x, light.color.y, light.color.z}},
-               {"intensity", light.intensity},
+               {"color", vector_json(light.color)},
+               {"intensity", number_json(light.intensity)},
                {"unit", light.kind == PunctualLightDescription::Kind::directional ? "W/m^2" : "W/sr"},
-               {"range", finite_or_null(light.range)}};
+               {"range", number_json(light.range)}};
   if (light.kind == PunctualLightDescription::Kind::spot) {
-    json["inner_cone_degrees"] = degrees(light.inner_cone);
-    json["outer_cone_degrees"] = degrees(light.outer_cone);
+    json["inner_cone_degrees"] = number_json(degrees(light.inner_cone));
+    json["outer_cone_degrees"] = number_json(degrees(light.outer_cone));
   }
   return json;
-}
-
-std::string_view name(AlphaMode mode) {
-  switch (mode) {
-    case AlphaMode::opaque:
-      return "opaque";
-    case AlphaMode::mask:
-      return "mask";
-    case AlphaMode::blend:
-      return "blend";
-  }
-  return "";
-}
-
-Json texture_names(const MaterialDescription& material) {
-  const std::pair<const char*, const TextureUse*> slots[] = {
-      {"base_color", &material.base_color_texture},
-      {"metallic_roughness", &material.metallic_roughness_texture},
-      {"normal", &material.normal_texture},
-      {"emissive", &material.emissive_texture},
-      {"specular", &material.specular_texture},
-      {"specular_color", &material.specular_color_texture},
-      {"transmission", &material.transmission_texture},
-  };
-  Json names = Json::array();
-  for (const auto& [slot, use] : slots)
-    if (*use) names.push_back(slot);
-  return names;
 }
 
 std::string_view name(FeatureUse::Status status) {
@@ -112,22 +81,8 @@ Json feature_json(const FeatureUse& feature) {
 
 }  // namespace
 
-Json material_json(const MaterialDescription& material) {
-  const Vec4f& base = material.base_color;
-  return {{"name", material.name},
-          {"base_color", {base.x, base.y, base.z, base.w}},
-          {"metallic", material.metallic},
-          {"roughness", material.roughness},
-          {"emissive", {material.emissive.x, material.emissive.y, material.emissive.z}},
-          {"alpha_mode", name(material.alpha_mode)},
-          {"double_sided", material.double_sided},
-          {"unlit", material.unlit},
-          {"ior", material.ior},
-          {"specular", material.specular},
-          {"transmission", material.transmission},
-          {"thickness", material.thickness},
-          {"attenuation_distance", finite_or_null(material.attenuation_distance)},
-          {"textures", texture_names(material)}};
+Json number_json(double value) {
+  return std::isfinite(value) ? Json::parse(fmt::format("{}", static_cast<float>(value))) : Json(nullptr);
 }
 
 Json scene_json(const SceneDescription& scene, const SceneCounts& counts, const Bounds& bounds) {

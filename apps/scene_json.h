@@ -1,12 +1,22 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
 #include "apps/scene_summary.h"
 #include "scene/bounds.h"
 #include "scene/description.h"
 
 namespace vernier::apps {
+
+/// The shortest decimal that is this value as a float; JSON has no infinity, so null stands for it.
+nlohmann::ordered_json number_json(double value);
+
+template <typename Vector>
+nlohmann::ordered_json vector_json(const Vector& v) {
+  auto list = nlohmann::ordered_json::array();
+  for (int i = 0; i < int(Vector::dimensions()); ++i) list.push_back(number_json(v[i]));
+  return list;
+}
 
 nlohmann::ordered_json material_json(const MaterialDescription& material);
 

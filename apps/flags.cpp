@@ -1,0 +1,48 @@
+#include "apps/flags.h"
+
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+
+namespace vernier::apps {
+
+CLI::Validator real_number(double least, double most) {
+  const auto check = [least, most](std::string& text) {
+    double value = 0;
+    if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most) return std::string();
+    return fmt::format("'{}' is not a number from {} to {}", text, least, most);
+  };
+  return {check, ""};
+}
+
+CLI::Validator whole_number(int least, int most) {
+  const auto check = [least, most](std::string& text) {
+    int value = 0;
+    if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most) return std::string();
+    return fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
+  };
+  return {check, ""};
+}
+
+void add_scene_flags(CLI::App& command, std::string& scene, ImportOptions& options) {
+  command.add_option("SCENE", scene, "glTF 2.0 scene (.gltf, .glb)")->type_name("");
+  const std::string group = command.option_defaults()->get_group();
+  command.option_defaults()->group("Scene");
+  command.add_option("--variant", options.variant, "of the materials, by name (KHR_materials_variants)")
+      ->type_name("NAME");
+  command.add_option("--at", options.time, "seconds into an animation (at rest)")
+      ->check(real_number(-1e9, 1e9))
+      ->type_name("SECONDS");
+  command.add_option("--animation", options.animation, "that poses the scene, by name or number (the first)")
+      ->type_name("NAME|N");
+  command.add_flag("--strict", options.strict, "refuse a scene that is not honoured exactly");
+  command.option_defaults()->group(group);
+}
+
+void require_scene(const std::string& scene, const std::string& command) {
+  if (scene.empty())
+    throw Error(ErrorKind::usage,
+                fmt::format("which scene? Give a .gltf or .glb file; see vernier {} --help", command));
+}
+
+}  // namespace vernier::apps
