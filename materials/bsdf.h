@@ -10,17 +10,21 @@
 
 namespace vernier {
 
-/// All models. Made at each hit, by value, with textures already read; the contract is in materials/bsdf_sample.h.
-/// A new model is a header of its own and an entry here.
+/// All models. Made at each hit, by value, with textures already read; the contract is in
+/// materials/bsdf_sample.h. A new model is a header of its own and an entry here.
 class Bsdf : public std::variant<Lambert, Conductor, Plastic, Dielectric, Mixture> {
  public:
   using variant::variant;
 
   BsdfEval eval(const Vec3f& wo, const Vec3f& wi) const {
+    if (wo.z < least_cosine || std::abs(wi.z) < least_cosine) return {};
     return std::visit([&](const auto& model) { return model.eval(wo, wi); }, base());
   }
   std::optional<BsdfSample> sample(const Vec3f& wo, float u, const Vec2f& v) const {
-    return std::visit([&](const auto& model) { return model.sample(wo, u, v); }, base());
+    if (wo.z < least_cosine) return std::nullopt;
+    auto sample = std::visit([&](const auto& model) { return model.sample(wo, u, v); }, base());
+    if (sample && std::abs(sample->wi.z) < least_cosine) sample.reset();
+    return sample;
   }
   Rgb albedo(const Vec3f& wo) const {
     return std::visit([&](const auto& model) { return model.albedo(wo); }, base());
@@ -30,6 +34,9 @@ class Bsdf : public std::variant<Lambert, Conductor, Plastic, Dielectric, Mixtur
   }
 
  private:
+  /// Directions nearer to the surface are answered with nothing: models divide by cosines and their squares.
+  static constexpr float least_cosine = 1e-7f;
+
   const variant& base() const { return *this; }
 };
 

@@ -3,46 +3,36 @@
 #include "materials/bsdf_sample.h"
 #include "materials/fresnel.h"
 #include "materials/ggx.h"
+#include "materials/ggx_energy.h"
+#include "materials/glass_energy.h"
 
 namespace vernier {
 
-/// Clear boundary, smooth or GGX-rough, with exact Fresnel reflectance (Walter et al. 2007, eqs. 20, 21). With `thin`
-/// the surface is a sheet of no thickness: what passes is not bent, and rough sheets blur it like the mirrored
-/// reflection lobe (glTF KHR_materials_transmission).
+/// Clear boundary, smooth or GGX-rough, with exact Fresnel reflectance (Walter et al. 2007, eqs. 20, 21).
+/// With `thin` the surface is a sheet of no thickness: what passes is not bent, and rough sheets blur it like
+/// the mirrored reflection lobe (glTF KHR_materials_transmission).
+///
+/// What one bounce on the facets loses, up to half the light for wide lobes seen from inside, is given back
+/// by dividing both lobes by the directional albedo (Turquin 2019, "Practical multiple scattering
+/// compensation for microfacet models"): it keeps the shape of the lobes and needs no further one, but rough
+/// glass is therefore reciprocal only up to the ratio of the two albedos.
 struct Dielectric {
-  float eta = 1.5f;       ///< index of the far side over that of the side of wo
+  float eta = 1.5f;  ///< index of the far side over that of the side of wo
   Ggx ggx;
-  Rgb tint{1, 1, 1};      ///< multiplies what is transmitted
+  Rgb tint{1, 1, 1};           ///< multiplies what is transmitted
   Rgb reflect_scale{1, 1, 1};  ///< multiplies the Fresnel reflectance except at total internal reflection
   bool thin = false;
+  const GlassEnergy* energy = nullptr;  ///< of eta; needed when rough and not thin
 
   BsdfEval eval(const Vec3f& wo, const Vec3f& wi) const {
-    if (ggx.is_smooth() || wo.z <= 0 || wi.z == 0) return {};
-    if (wi.z > 0) return eval_reflection(wo, wi);
-    if (thin) {
-      const Vec3f mirrored(wi.x, wi.y, -wi.z);
-      const Vec3f m = normalize(wo + mirrored);
-      const Split split = boundary(dot(wo, m));
-      const float visible = ggx.visible_pdf(wo, m) / (4 * dot(wo, m));
-      return {split.transmitted * (visible * ggx.g2(wo, mirrored) / ggx.g1(wo)), (1 - split.prob) * visible};
-    }
-    if (eta == 1) return {};
-    // Generalised half vector, turned to the side of wo.
-    Vec3f m = normalize(wo + eta * wi);
-    if (m.z < 0) m = -m;
-    const float cos_om = dot(wo, m), cos_im = dot(wi, m);
-    if (cos_om <= 0 || cos_im >= 0) return {};
-    const Split split = boundary(cos_om);
-    const float jacobian = eta * eta * -cos_im / square(cos_om + eta * cos_im);
-    const float visible = ggx.visible_pdf(wo, m) * jacobian;
-    // f cos / pdf of the lobe is G2/G1 / eta^2: radiance is compressed by the squared index.
-    const float shadowing = (1 + ggx.lambda(wo)) / (1 + ggx.lambda(wo) + ggx.lambda(-wi));
-    return {split.transmitted * (visible * shadowing / (eta * eta)), (1 - split.prob) * visible};
+    if (is_delta()) return {};
+    BsdfEval value = single_scattering(wo, wi);
+    if (value.pdf > 0) value.f_cos /= single_albedo(wo);
+    return value;
   }
 
   std::optional<BsdfSample> sample(const Vec3f& wo, float u, const Vec2f& v) const {
-    if (wo.z <= 0) return std::nullopt;
-    const bool smooth = ggx.is_smooth() || (eta == 1 && !thin);
+    const bool smooth = is_delta();
     const Vec3f m = smooth ? Vec3f(0, 0, 1) : ggx.sample_visible(wo, v);
     const float cos_om = dot(wo, m);
     const Split split = boundary(cos_om);
@@ -95,12 +85,43 @@ struct Dielectric {
       split.prob = 1;
       return split;
     }
-    split.reflected = reflect_scale * fresnel;
+    for (int c = 0; c < 3; ++c) split.reflected[c] = std::min(reflect_scale[c] * fresnel, 1.f);
     split.transmitted = tint * (Rgb(1, 1, 1) - split.reflected);
     const float r = max_component(split.reflected), t = max_component(split.transmitted);
     split.prob = r + t > 0 ? r / (r + t) : 1;
     return split;
   }
+
+  BsdfEval single_scattering(const Vec3f& wo, const Vec3f& wi) const {
+    if (wi.z > 0) return eval_reflection(wo, wi);
+    if (thin) {
+      const Vec3f mirrored(wi.x, wi.y, -wi.z);
+      const Vec3f m = normalize(wo + mirrored);
+      const Split split = boundary(dot(wo, m));
+      const float visible = ggx.visible_pdf(wo, m) / (4 * dot(wo, m));
+      return {split.transmitted * (visible * ggx.g2(wo, mirrored) / ggx.g1(wo)), (1 - split.prob) * visible};
+    }
+    // Generalised half vector, turned to the side of wo.
+    Vec3f m = normalize(wo + eta * wi);
+    if (m.z < 0) m = -m;
+    const float cos_om = dot(wo, m), cos_im = dot(wi, m);
+    if (cos_om <= 0 || cos_im >= 0) return {};
+    const Split split = boundary(cos_om);
+    const float jacobian = eta * eta * -cos_im / square(cos_om + eta * cos_im);
+    const float visible = ggx.visible_pdf(wo, m) * jacobian;
+    // f cos / pdf of the lobe is G2/G1 / eta^2: radiance is compressed by the squared index.
+    const float shadowing = (1 + ggx.lambda(wo)) / (1 + ggx.lambda(wo) + ggx.lambda(-wi));
+    return {split.transmitted * (visible * shadowing / (eta * eta)), (1 - split.prob) * visible};
+  }
+
+  /// Fraction of light that single_scattering() returns when it absorbs none.
+  Rgb single_albedo(const Vec3f& wo) const {
+    const float alpha = std::sqrt(ggx.ax * ggx.ay);
+    if (thin) return Rgb(1 - ggx_albedo(wo.z, alpha).missing);
+    return energy->albedo(wo.z, alpha, reflect_scale);
+  }
+
+  bool is_delta() const { return ggx.is_smooth() || (eta == 1 && !thin); }
 
   Vec3f refract(const Vec3f& wo, const Vec3f& m, float cos_om, float cos_t) const {
     return (cos_om / eta - cos_t) * m - wo / eta;

@@ -2,68 +2,108 @@
 
 #include <array>
 
-#include "core/base/parallel.h"
 #include "materials/fresnel.h"
+#include "materials/gauss_nodes.h"
 #include "materials/ggx.h"
+#include "materials/ggx_coordinates.h"
 
 namespace vernier {
 namespace {
 
-// Nodes are denser where the albedo bends most: cosines as squares, so that grazing angles are resolved, and widths
-// as squares of roughness.
-constexpr int cosines = 48;
-constexpr int widths = 32;
-constexpr float node_cosine(int i) { return square(float(i) / (cosines - 1)); }
-constexpr float node_alpha(int j) { return square(float(j) / (widths - 1)); }
+constexpr int cosines = 96;
+constexpr int widths = 40;
+constexpr int averages = 256;
+constexpr float least_alpha = 1e-4f;
 
-struct Table {
-  std::array<std::array<GgxAlbedo, cosines>, widths> directional;
-  std::array<GgxAlbedo, widths> average;
-};
-
-/// Mean of G2/G1 over visible normals on a midpoint grid: the lobe's albedo, since the rest of f cos / pdf cancels
-/// (Heitz 2018, "Sampling the GGX Distribution of Visible Normals", eq. 19).
-GgxAlbedo integrate(float cos_theta, float alpha) {
-  constexpr int grid = 48;
-  const Ggx ggx{std::max(alpha, 1e-4f), std::max(alpha, 1e-4f)};
-  const float z = std::max(cos_theta, 1e-4f);
-  const Vec3f wo(safe_sqrt(1 - z * z), 0, z);
-  double scale = 0, bias = 0;
-  for (int i = 0; i < grid; ++i)
-    for (int j = 0; j < grid; ++j) {
-      const Vec3f m = ggx.sample_visible(wo, {(float(i) + 0.5f) / grid, (float(j) + 0.5f) / grid});
-      const float cos_om = dot(wo, m);
-      const Vec3f wi = 2 * cos_om * m - wo;
-      if (wi.z <= 0) continue;
-      const float weight = ggx.g2(wo, wi) / ggx.g1(wo);
-      const float grazing = schlick_weight(cos_om);
-      scale += weight * (1 - grazing);
-      bias += weight * grazing;
-    }
-  return {float(scale / (grid * grid)), float(bias / (grid * grid))};
+GgxAlbedo mix(float t, const GgxAlbedo& a, const GgxAlbedo& b) {
+  return {lerp(t, a.missing, b.missing), lerp(t, a.bias, b.bias)};
 }
 
+template <size_t N>
+GgxAlbedo interpolate(const std::array<GgxAlbedo, N>& nodes, float x) {
+  const float position = std::clamp(x, 0.f, 1.f) * float(N - 1);
+  const int index = std::min(int(position), int(N) - 2);
+  return mix(position - float(index), nodes[index], nodes[index + 1]);
+}
+
+/// Integral over facet normals of G2 D (o.m) / o.z, alone and times what the grazing reflectance exceeds that
+/// of a smooth surface by; tables keep that excess as `bias`, because it bends little. Normals are taken in
+/// polar angles, each azimuth up to where the reflected direction meets the horizon, so that the integrand is
+/// smooth; the angle is stretched by 1/alpha, and azimuths are dense where the horizon moves fastest.
+GgxAlbedo integrate(float cos_theta, float alpha) {
+  const float z = std::max({cos_theta, 1e-5f * alpha, 1e-7f});
+  const float sine = safe_sqrt(1 - z * z);
+  const Vec3f wo(sine, 0, z);
+  const Ggx ggx{alpha, alpha};
+  const float lambda_o = ggx.lambda(wo), smooth = schlick_weight(z);
+  double total = 0, excess = 0;
+  const auto add_azimuth = [&](float cos_phi, float sin_phi, double weight) {
+    const float horizon = (pi / 2 + std::atan2(sine * cos_phi, z)) / 2;
+    const float range = std::atan(std::tan(horizon) / alpha);
+    for_each_gauss_node<10>([&](float x, float w) {
+      const float stretched = range * (1 - (1 - x) * (1 - x) * (1 - x));
+      const float sin_s = std::sin(stretched), cos_s = std::cos(stretched);
+      const float tan_m = alpha * sin_s / cos_s;
+      const float cos_m = 1 / std::sqrt(1 + tan_m * tan_m), sin_m = tan_m * cos_m;
+      const Vec3f m(sin_m * cos_phi, sin_m * sin_phi, cos_m);
+      const float cos_om = dot(wo, m);
+      const Vec3f wi = 2 * cos_om * m - wo;
+      if (cos_om <= 0 || wi.z <= 0) return;
+      const float density = 6 * range * (1 - x) * (1 - x) * sin_s * cos_s;
+      const double value = weight * w * density * cos_om / (z * cos_m * (1 + lambda_o + ggx.lambda(wi)));
+      total += value;
+      excess += value * (schlick_weight(cos_om) - smooth);
+    });
+  };
+  for_each_gauss_node<7>([&](float x, float w) {
+    const float offset = (pi / 2) * x * x;  // of the azimuth from a right angle
+    add_azimuth(std::sin(offset), std::cos(offset), w * x);
+    add_azimuth(-std::sin(offset), std::cos(offset), w * x);
+  });
+  return {float(1 - total), float(excess)};
+}
+
+struct Table {
+  std::array<std::array<GgxAlbedo, cosines>, widths>
+      directional;                          ///< bias is in excess of a smooth surface's
+  std::array<GgxAlbedo, averages> average;  ///< missing is divided by alpha^2
+
+  GgxAlbedo albedo(float cos_theta, float alpha) const {
+    const float x = albedo_coordinate(cos_theta, alpha);
+    const float row = std::sqrt(alpha) * float(widths - 1);
+    const int index = std::min(int(row), widths - 2);
+    GgxAlbedo result =
+        mix(row - float(index), interpolate(directional[index], x), interpolate(directional[index + 1], x));
+    result.bias += (1 - result.missing) * schlick_weight(cos_theta);
+    return result;
+  }
+};
+
+GgxAlbedo average(const Table& table, float alpha) {
+  constexpr int steps = 256;
+  double missing = 0, bias = 0;
+  for (int s = 0; s < steps; ++s) {
+    const float low = albedo_cosine(float(s) / steps, alpha),
+                high = albedo_cosine(float(s + 1) / steps, alpha);
+    const GgxAlbedo middle = table.albedo((low + high) / 2, alpha);
+    const double weight = double(high) * high - double(low) * low;
+    missing += weight * middle.missing;
+    bias += weight * middle.bias;
+  }
+  return {float(missing / (alpha * alpha)), float(bias)};
+}
+
+/// On one thread: others may wait for it, and a thread that shares work while it holds them up could be given
+/// work that needs the table.
 Table make_table() {
   Table table;
-  parallel_for(widths, [&](size_t j) {
-    for (int i = 0; i < cosines; ++i) table.directional[j][i] = integrate(node_cosine(i), node_alpha(int(j)));
-    // Average of the interpolant that lookups see, so that compensation closes exactly on it:
-    // 2 int E(mu) mu dmu with mu = x^2 and E linear in x between nodes, by the midpoint rule in x.
-    double scale = 0, bias = 0, weight = 0;
-    constexpr int steps = (cosines - 1) * 8;
-    for (int s = 0; s < steps; ++s) {
-      const double x = (s + 0.5) / steps;
-      const int i = std::min(int(x * (cosines - 1)), cosines - 2);
-      const double t = x * (cosines - 1) - i;
-      const auto& a = table.directional[j][i];
-      const auto& b = table.directional[j][i + 1];
-      const double w = x * x * x;  // mu dmu = 2 x^3 dx
-      scale += w * ((1 - t) * a.scale + t * b.scale);
-      bias += w * ((1 - t) * a.bias + t * b.bias);
-      weight += w;
-    }
-    table.average[j] = {float(scale / weight), float(bias / weight)};
-  });
+  for (int j = 0; j < widths; ++j) {
+    const float alpha = std::max(square(float(j) / (widths - 1)), least_alpha);
+    for (int i = 0; i < cosines; ++i)
+      table.directional[j][i] = integrate(albedo_cosine(float(i) / (cosines - 1), alpha), alpha);
+  }
+  for (int k = 0; k < averages; ++k)
+    table.average[k] = average(table, std::max(square(float(k) / (averages - 1)), least_alpha));
   return table;
 }
 
@@ -72,33 +112,17 @@ const Table& table() {
   return instance;
 }
 
-struct Position {
-  int index;
-  float fraction;
-};
-Position locate(float value, int nodes) {
-  const float x = std::sqrt(std::clamp(value, 0.f, 1.f)) * float(nodes - 1);
-  const int index = std::min(int(x), nodes - 2);
-  return {index, x - float(index)};
-}
-
-GgxAlbedo mix(float t, const GgxAlbedo& a, const GgxAlbedo& b) {
-  return {lerp(t, a.scale, b.scale), lerp(t, a.bias, b.bias)};
-}
-
 }  // namespace
 
 GgxAlbedo ggx_albedo(float cos_theta, float alpha) {
-  const auto [i, ti] = locate(cos_theta, cosines);
-  const auto [j, tj] = locate(alpha, widths);
-  const auto& low = table().directional[j];
-  const auto& high = table().directional[j + 1];
-  return mix(tj, mix(ti, low[i], low[i + 1]), mix(ti, high[i], high[i + 1]));
+  return table().albedo(std::clamp(cos_theta, 0.f, 1.f), std::clamp(alpha, least_alpha, 1.f));
 }
 
 GgxAlbedo ggx_average_albedo(float alpha) {
-  const auto [j, tj] = locate(alpha, widths);
-  return mix(tj, table().average[j], table().average[j + 1]);
+  const float a = std::clamp(alpha, least_alpha, 1.f);
+  GgxAlbedo result = interpolate(table().average, std::sqrt(a));
+  result.missing *= a * a;
+  return result;
 }
 
 }  // namespace vernier

@@ -4,21 +4,22 @@
 
 namespace vernier {
 
-/// How much of the light a GGX reflection lobe returns after one bounce on its facets, split so that any Schlick
-/// reflectance follows: f0 * scale + f90 * bias (Karis 2013, "Real Shading in Unreal Engine 4", environment BRDF).
-/// With reflectance 1 it is scale + bias.
+/// How much of the light a GGX reflection lobe returns after one bounce on its facets, split so that any
+/// Schlick reflectance follows: f0 (1 - missing - bias) + f90 bias (Karis 2013, "Real Shading in Unreal
+/// Engine 4", environment BRDF). With reflectance 1 it is 1 - missing.
 struct GgxAlbedo {
-  float scale = 1, bias = 0;
+  float missing = 0;  ///< blocked by other facets
+  float bias = 0;
 
-  float total() const { return scale + bias; }
-  Rgb with(const Rgb& f0, const Rgb& f90) const { return f0 * scale + f90 * bias; }
+  Rgb with(const Rgb& f0, const Rgb& f90) const { return f0 * (1 - missing - bias) + f90 * bias; }
 };
 
-/// Directional albedo at cos_theta in [0,1] for width alpha in [0,1], from a table integrated at first use; within 5e-4
-/// of the integral for alpha >= 0.002.
+/// Directional albedo at cos_theta in [0,1] for width alpha in [0,1], from a table integrated at first use
+/// (some 20 ms on one core); within 7e-4 of the integral for alpha from Ggx::smooth_limit upwards.
 GgxAlbedo ggx_albedo(float cos_theta, float alpha);
 
-/// Its cosine-weighted mean over the hemisphere.
+/// Cosine-weighted mean of ggx_albedo() over the hemisphere: of what the table says, so that a lobe built
+/// from both loses nothing to interpolation.
 GgxAlbedo ggx_average_albedo(float alpha);
 
 }  // namespace vernier

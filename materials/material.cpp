@@ -22,6 +22,9 @@ Rgb absorption_of(const MaterialDescription& d) {
   return sigma;
 }
 
+/// An index of 0 stands for an infinite one (KHR_materials_ior).
+float relative_index(const MaterialDescription& d) { return d.ior == 0 ? 1e6f : d.ior; }
+
 }  // namespace
 
 Material::Material(const MaterialDescription& description, std::span<const Texture> textures, bool has_colors)
@@ -33,6 +36,10 @@ Material::Material(const MaterialDescription& description, std::span<const Textu
   needs_attributes_ = bsdf_varies || d.normal_texture || d.emissive_texture;
   is_emissive_ = d.unlit || !is_black(d.emissive);
   absorption_ = absorption_of(d);
+  if (is_volume_boundary()) {
+    energy_front_ = &GlassEnergy::of(relative_index(d));
+    energy_back_ = &GlassEnergy::of(1 / relative_index(d));
+  }
   if (is_constant_) {
     constant_front_ = make_bsdf({}, true);
     constant_back_ = make_bsdf({}, false);
@@ -89,8 +96,9 @@ Bsdf Material::make_bsdf(const SurfaceAttributes& attributes, bool front) const 
   if (transmission <= 0 && metallic <= 0) return plastic;
 
   const bool thin = d.thickness <= 0;
-  const float ior = d.ior == 0 ? 1e6f : d.ior;
-  const Dielectric glass{thin || front ? ior : 1 / ior, ggx, color, specular_color * f90, thin};
+  const float ior = relative_index(d);
+  const Dielectric glass{
+      thin || front ? ior : 1 / ior, ggx, color, specular_color * f90, thin, front ? energy_front_ : energy_back_};
   if (transmission >= 1 && metallic <= 0) return glass;
   return Mixture{
       metal, plastic, glass, metallic, (1 - metallic) * (1 - transmission), (1 - metallic) * transmission};

@@ -64,6 +64,8 @@ class Material {
   bool is_constant_ = false;  ///< nothing of the BSDF depends on the place
   bool is_emissive_ = false;
   Rgb absorption_{0, 0, 0};
+  const GlassEnergy* energy_front_ = nullptr;  ///< of a volume's boundary
+  const GlassEnergy* energy_back_ = nullptr;
   Bsdf constant_front_, constant_back_;
 };
 

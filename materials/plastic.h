@@ -8,10 +8,10 @@
 
 namespace vernier {
 
-/// Diffuse body under a dielectric GGX surface: glTF's non-metal. The body receives what the surface lets through on
-/// the way in and out, (1 - E(wo)) (1 - E(wi)) normalised, which is reciprocal and loses nothing when the body is
-/// white; glTF 2.0 Appendix B's own example, 1 - F(h.v), is neither (Ashikhmin and Shirley 2000; Kelemen and
-/// Szirmay-Kalos 2001).
+/// Diffuse body under a dielectric GGX surface: glTF's non-metal. The body receives what the surface lets
+/// through on the way in and out, (1 - E(wo)) (1 - E(wi)) normalised, which is reciprocal and loses nothing
+/// when the body is white; glTF 2.0 Appendix B's own example, 1 - F(h.v), is neither (Ashikhmin and Shirley
+/// 2000; Kelemen and Szirmay-Kalos 2001).
 struct Plastic {
   Rgb diffuse{1, 1, 1};
   Rgb f0{0.04f, 0.04f, 0.04f};
@@ -19,18 +19,18 @@ struct Plastic {
   Ggx ggx;
 
   BsdfEval eval(const Vec3f& wo, const Vec3f& wi) const {
-    if (wi.z <= 0 || wo.z <= 0) return {};
+    if (wi.z <= 0) return {};
     return eval(wo, wi, body_and_surface(wo));
   }
 
   std::optional<BsdfSample> sample(const Vec3f& wo, float u, const Vec2f& v) const {
-    if (wo.z <= 0) return std::nullopt;
     const Split split = body_and_surface(wo);
     Vec3f wi;
     Lobe lobe = Lobe::diffuse;
     if (u < split.surface_prob) {
       if (ggx.is_smooth())
-        return BsdfSample{reflect(wo), split.surface / split.surface_prob, split.surface_prob, Lobe::delta, 1};
+        return BsdfSample{reflect(wo), split.surface / split.surface_prob, split.surface_prob, Lobe::delta,
+                          1};
       const Vec3f m = ggx.sample_visible(wo, v);
       wi = 2 * dot(wo, m) * m - wo;
       lobe = Lobe::glossy;
@@ -53,7 +53,8 @@ struct Plastic {
   }
 
  private:
-  /// Fractions of light from wo that the surface reflects and that the body does, with the lobe choice they imply.
+  /// Fractions of light from wo that the surface reflects and that the body does, with the lobe choice they
+  /// imply.
   struct Split {
     Rgb surface, body;
     float surface_prob;
@@ -61,7 +62,8 @@ struct Plastic {
 
   float alpha() const { return std::sqrt(ggx.ax * ggx.ay); }
   Rgb surface_albedo(float cos_theta) const {
-    return ggx.is_smooth() ? fresnel_schlick(f0, f90, cos_theta) : ggx_albedo(cos_theta, alpha()).with(f0, f90);
+    return ggx.is_smooth() ? fresnel_schlick(f0, f90, cos_theta)
+                           : ggx_albedo(cos_theta, alpha()).with(f0, f90);
   }
   Rgb average_surface_albedo() const {
     return ggx.is_smooth() ? f0 + (f90 - f0) / 21 : ggx_average_albedo(alpha()).with(f0, f90);
