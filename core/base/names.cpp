@@ -51,7 +51,8 @@ std::string unknown_name_message(std::string_view kind, std::string_view name,
   return message;
 }
 
-void throw_unknown_name(std::string_view kind, std::string_view name, std::span<const std::string> candidates) {
+void throw_unknown_name(std::string_view kind, std::string_view name,
+                        std::span<const std::string> candidates) {
   throw Error(ErrorKind::usage, unknown_name_message(kind, name, candidates));
 }
 

@@ -18,8 +18,8 @@ std::string unknown_name_message(std::string_view kind, std::string_view name,
 [[noreturn]] void throw_unknown_name(std::string_view kind, std::string_view name,
                                      std::span<const std::string> candidates);
 
-/// The entry of a registry table called `name` (entries have a member `name`); throws Error(usage) listing the
-/// names there are.
+/// The entry of a registry table called `name` (entries have a member `name`); throws Error(usage) listing
+/// the names there are.
 template <typename Table>
 const auto& find_by_name(const Table& table, std::string_view kind, std::string_view name) {
   for (const auto& entry : table)

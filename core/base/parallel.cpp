@@ -9,7 +9,8 @@ ThreadLimit::ThreadLimit(unsigned threads)
                threads ? threads : static_cast<size_t>(tbb::info::default_concurrency())) {}
 
 unsigned thread_count() {
-  return static_cast<unsigned>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+  return static_cast<unsigned>(
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 }
 
 }  // namespace vernier
