@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "core/base/error.h"
 #include "scene/import/import.h"
 
 // Flags that several subcommands share, and checks of their values.
@@ -14,6 +15,20 @@ CLI::Validator real_number(double least, double most);
 
 /// A whole number from `least` to `most`.
 CLI::Validator whole_number(int least, int most);
+
+/// Text that `parse` takes; it throws Error(usage) on any other.
+template <typename Parse>
+CLI::Validator parsed_by(Parse parse) {
+  const auto check = [parse](std::string& text) {
+    try {
+      parse(text);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  return {check, ""};
+}
 
 /// SCENE, and the flags that say how it is read.
 void add_scene_flags(CLI::App& command, std::string& scene, ImportOptions& options);

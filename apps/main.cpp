@@ -64,7 +64,7 @@ std::string describe_extras(const CLI::App& app, const std::vector<std::string>&
   for (const auto& word : extras) {
     if (word.size() < 2 || word[0] != '-') continue;
     const std::string flag = word.substr(0, word.find('='));
-    const auto nearest = nearest_name(flag, flag_names(command));
+    const auto nearest = flag.size() < 4 ? "" : nearest_name(flag, flag_names(command));
     return fmt::format("unknown flag '{}'{}; see {} --help", flag,
                        nearest.empty() ? "" : fmt::format(", did you mean '{}'?", nearest), prefix);
   }
@@ -82,8 +82,11 @@ ExitCode parse_failed(const CLI::App& app, const CLI::ParseError& error) {
   std::vector<std::string> extras = app.remaining(true);
   const bool flag =
       std::any_of(extras.begin(), extras.end(), [](const auto& w) { return w.size() > 1 && w[0] == '-'; });
-  if (flag || (!extras.empty() && dynamic_cast<const CLI::ExtrasError*>(&error)))
+  const bool no_command = app.get_subcommands().empty();
+  if (flag || (!extras.empty() && (no_command || dynamic_cast<const CLI::ExtrasError*>(&error))))
     print_error(describe_extras(app, extras));
+  else if (no_command)
+    print_error("which command? See vernier --help");
   else
     print_error(error.what());
   return ExitCode::usage;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 
@@ -21,20 +22,35 @@ namespace {
 /// Of a film with one group, and the picture made from it.
 constexpr double film_bytes_per_pixel = 4 * sizeof(double) + 3 * sizeof(float);
 
+/// A negative number would be taken for a large one.
+void parse_seed(const std::string& text) {
+  uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error != std::errc{} || end != text.data() + text.size())
+    throw Error(ErrorKind::usage, fmt::format("'{}' is not a whole number from 0 to 2^64 - 1", text));
+}
+
 void add_quality_flags(CLI::App& command, RenderFlags& flags) {
   command.option_defaults()->group("Picture and effort");
   command.add_option("--spp", flags.spp, "samples a pixel (64 unless --time is given)")
       ->check(whole_number(1, 1 << 30))
       ->type_name("N");
   command.add_option("--time", flags.time, "stop rendering after this long: 90s, 10m, 1.5h")
+      ->check(parsed_by(parse_seconds))
       ->type_name("TIME");
   command
       .add_option("--size,--resolution", flags.size, "of the picture (the camera's shape, 1280 pixels long)")
+      ->check(parsed_by(parse_pixel_size))
       ->type_name("WxH");
-  command.add_option("--crop", flags.crop, "render only this part")->type_name("WxH+X+Y");
+  command.add_option("--crop", flags.crop, "render only this part")
+      ->check(parsed_by(parse_pixel_rect))
+      ->type_name("WxH+X+Y");
   command.add_option("--camera", flags.camera, "of the scene, by name or number (the first)")
       ->type_name("NAME|N");
-  command.add_option("--seed", flags.seed, "of the random numbers")->type_name("N")->capture_default_str();
+  command.add_option("--seed", flags.seed, "of the random numbers")
+      ->check(parsed_by(parse_seed))
+      ->type_name("N")
+      ->capture_default_str();
   command.add_option("-t,--threads,--nthreads", flags.threads, "0: all of the machine's")
       ->check(whole_number(0, 4096))
       ->type_name("N")
