@@ -2,29 +2,39 @@
 
 namespace vernier {
 
-int64_t Film::samples(int x, int y) const {
-  int64_t total = 0;
-  for (int g = 0; g < groups_; ++g) total += group_samples(x, y, g);
-  return total;
-}
-
-Vec3d Film::group_mean(int x, int y, int group) const {
-  const Cell& cell = cells_[index(x, y) + group];
+Vec3d Film::half_mean(int x, int y, int half) const {
+  const Cell& cell = cells_[index(x, y, half)];
   return cell.count ? cell.sum / double(cell.count) : Vec3d(0, 0, 0);
 }
 
-Image Film::mean() const {
+Vec3d Film::half_mean_variance(int x, int y, int half) const {
+  const Cell& cell = cells_[index(x, y, half)];
+  if (cell.count < 2) return {0, 0, 0};
+  const double n = cell.count;
+  const Vec3d spread = cell.sum_of_squares - cell.sum * cell.sum / n;
+  return max(spread, Vec3d(0, 0, 0)) / ((n - 1) * n);
+}
+
+Vec3d Film::pixel(int x, int y) const {
+  if (samples(x, y, 1) == 0) return half_mean(x, y, 0);
+  if (samples(x, y, 0) == 0) return half_mean(x, y, 1);
+  return (half_mean(x, y, 0) + half_mean(x, y, 1)) / 2.0;
+}
+
+double Film::largest_share(int x, int y) const {
+  const Cell& a = cells_[index(x, y, 0)];
+  const Cell& b = cells_[index(x, y, 1)];
+  const Vec3d sum = a.sum + b.sum;
+  const double total = std::max(sum.x, std::max(sum.y, sum.z));
+  return total > 0 ? std::max(a.largest, b.largest) / total : 0;
+}
+
+Image Film::image() const {
   Image image(width_, height_, 3);
   for (int y = 0; y < height_; ++y)
     for (int x = 0; x < width_; ++x) {
-      Vec3d sum(0, 0, 0);
-      int64_t count = 0;
-      for (int g = 0; g < groups_; ++g) {
-        const Cell& cell = cells_[index(x, y) + g];
-        sum += cell.sum;
-        count += cell.count;
-      }
-      for (int c = 0; c < 3; ++c) image.pixel(x, y)[c] = count ? float(sum[c] / double(count)) : 0.f;
+      const Vec3d value = pixel(x, y);
+      for (int c = 0; c < 3; ++c) image.pixel(x, y)[c] = float(value[c]);
     }
   return image;
 }

@@ -7,43 +7,58 @@
 
 namespace vernier {
 
-/// Sums of samples per pixel, in double, split into `groups` that are statistically independent of each other, so
-/// that their spread measures the error of the mean. One thread at a time may add to a given pixel.
+/// Sums of samples per pixel, in double, kept in two halves whose samples are independent of each other:
+/// their difference measures the error of their mean. One thread at a time may add to a given pixel.
 class Film {
  public:
-  Film(int width, int height, int groups = 1)
-      : width_(width), height_(height), groups_(groups), cells_(size_t(width) * height * groups) {}
+  static constexpr int halves = 2;
+
+  Film(int width, int height) : width_(width), height_(height), cells_(size_t(width) * height * halves) {}
 
   /// A sample that is not finite or is negative in any channel is not stored; returns false for it.
-  [[nodiscard]] bool add(int x, int y, int group, const Rgb& radiance) {
+  [[nodiscard]] bool add(int x, int y, int half, const Rgb& radiance) {
     const float smallest = std::min(radiance.x, std::min(radiance.y, radiance.z));
     if (!(smallest >= 0) || !is_finite(radiance)) return false;
-    Cell& cell = cells_[index(x, y) + group];
-    cell.sum += Vec3d(radiance);
+    Cell& cell = cells_[index(x, y, half)];
+    const Vec3d value(radiance);
+    cell.sum += value;
+    cell.sum_of_squares += value * value;
+    cell.largest = std::max(cell.largest, max_component(radiance));
     ++cell.count;
     return true;
   }
 
   int width() const { return width_; }
   int height() const { return height_; }
-  int groups() const { return groups_; }
 
-  int64_t samples(int x, int y) const;
-  int64_t group_samples(int x, int y, int group) const { return cells_[index(x, y) + group].count; }
-  /// Mean of one group's samples; zero where there are none.
-  Vec3d group_mean(int x, int y, int group) const;
+  uint32_t samples(int x, int y, int half) const { return cells_[index(x, y, half)].count; }
+  uint32_t samples(int x, int y) const { return samples(x, y, 0) + samples(x, y, 1); }
 
-  /// Mean of all samples of each pixel: three channels, linear Rec.709; zero where there are none.
-  Image mean() const;
+  /// Mean of one half's samples; zero where there are none.
+  Vec3d half_mean(int x, int y, int half) const;
+  /// Variance that the mean of one half would have if its samples were independent: an upper bound in
+  /// practice, since they are stratified. Zero with fewer than two samples.
+  Vec3d half_mean_variance(int x, int y, int half) const;
+
+  /// The pixel: the mean of the two halves' means, so that its weights do not depend on the samples even when
+  /// the number of samples does; of the first half alone while the second has none.
+  Vec3d pixel(int x, int y) const;
+  /// Part of the sum of all samples that the largest one makes up, in [0, 1]; the brightest channel counts.
+  double largest_share(int x, int y) const;
+
+  /// All pixels: three channels, linear Rec.709; zero where there are no samples.
+  Image image() const;
 
  private:
   struct Cell {
     Vec3d sum{0, 0, 0};
-    int64_t count = 0;
+    Vec3d sum_of_squares{0, 0, 0};
+    uint32_t count = 0;
+    float largest = 0;
   };
-  size_t index(int x, int y) const { return (size_t(y) * width_ + x) * groups_; }
+  size_t index(int x, int y, int half) const { return (size_t(y) * width_ + x) * halves + half; }
 
-  int width_, height_, groups_;
+  int width_, height_;
   std::vector<Cell> cells_;
 };
 
