@@ -23,6 +23,9 @@ std::vector<float> read_components(const Document& document, int accessor) {
 
 int find_animation(const Document& document, const std::string& wanted) {
   const auto& animations = document.model().animations;
+  if (animations.empty())
+    throw Error(ErrorKind::usage, document.files().scene_path(), "/animations",
+                "the file has no animation to pose by");
   std::vector<std::string> names;
   for (size_t i = 0; i < animations.size(); ++i) {
     names.push_back(animations[i].name.empty() ? std::to_string(i) : animations[i].name);
@@ -30,7 +33,7 @@ int find_animation(const Document& document, const std::string& wanted) {
   }
   for (size_t i = 0; i < animations.size(); ++i)
     if (wanted == std::to_string(i)) return int(i);
-  if (wanted.empty() && !animations.empty()) return 0;
+  if (wanted.empty()) return 0;
   throw_unknown_name("animation", wanted, names);
 }
 

@@ -53,12 +53,11 @@ json parse_json(std::span<const uint8_t> text, const std::string& file) {
   }
 }
 
-void check_version(const json& root, const std::string& file) {
-  const auto& asset = root["asset"];
-  const std::string version = asset["version"], least = asset.value("minVersion", version);
-  if (!version.starts_with("2.") || (least != "2.0" && least != version))
+void check_version(const json& asset, const std::string& file) {
+  const std::string version = asset["version"], least = asset.value("minVersion", "2.0");
+  if (!version.starts_with("2.") || least != "2.0")
     throw Error(ErrorKind::input, file, "/asset/version",
-                fmt::format("glTF {} cannot be read, only 2.0; convert the file to glTF 2.0", least));
+                fmt::format("glTF {} cannot be read, only 2.0; convert the file to glTF 2.0", version));
 }
 
 bool is_meshopt_fallback(const json& buffer) {
@@ -77,7 +76,7 @@ Document::Document(const std::string& path) : files_(path) {
   // Version 1.0 is another format altogether: say so before anything else is found wrong.
   if (root.is_object() && root.contains("asset") && root["asset"].is_object() &&
       root["asset"].contains("version") && root["asset"]["version"].is_string())
-    check_version(root, path);
+    check_version(root["asset"], path);
   check_against_schema(root, gltf_schema(), path);
   read_buffers(root, container.binary);
   if (!container.binary.empty()) storage_.push_back(std::move(file));

@@ -8,6 +8,7 @@
 #include "scene/import/ordered_parallel.h"
 #include "scene/import/primitive_data.h"
 #include "scene/import/tangents.h"
+#include "scene/import/vertex_arrays.h"
 
 namespace vernier {
 namespace {
@@ -134,6 +135,7 @@ MeshDescription read_mesh(const Document& document, const MeshRequest& request,
   if (!use.weights.empty()) morph(data, use.weights, mesh);
   if (use.skin >= 0) skin(data, joint_matrices(document, use.skin, node_to_world), mesh);
   if (!use.weights.empty() || use.skin >= 0) check_positions(data, mesh.positions);
+  drop_unused_vertices(mesh);
   if (request.tangent_map && mesh.tangents.empty()) derive_tangents(mesh, *request.tangent_map);
   return mesh;
 }

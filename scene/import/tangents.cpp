@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
+#include <tuple>
 #include <unordered_map>
 
 #include "core/math/frame.h"
+#include "scene/import/vertex_arrays.h"
 
 namespace vernier {
 namespace {
@@ -186,8 +189,7 @@ class TangentBuilder {
     }
   }
 
-  Vec4f tangent_of(int group, uint32_t original) const {
-    const Vec3f n = mesh_.normals[original];
+  Vec4f tangent_of(int group, const Vec3f& n) const {
     if (group == none || !(length_squared(groups_[size_t(group)].sum) > 0)) {
       const Vec3f any = Frame::from_normal(n).x;
       return {any.x, any.y, any.z, 1};
@@ -199,35 +201,28 @@ class TangentBuilder {
 
   /// Gives each vertex the tangent of its corners' group, splitting it where there are several.
   void assign() {
-    std::vector<int> group_at(mesh_.positions.size(), none);
-    std::unordered_map<uint64_t, uint32_t> split;
-    mesh_.tangents.assign(mesh_.positions.size(), Vec4f(0, 0, 0, 0));
+    std::vector<uint32_t> sources(mesh_.positions.size());
+    std::iota(sources.begin(), sources.end(), 0u);
+    std::vector<int> groups(sources.size(), none);
+    std::unordered_map<uint64_t, uint32_t> copies;
     for (size_t t = 0; t < info_.size(); ++t)
       for (size_t c = 0; c < 3; ++c) {
         uint32_t& index = mesh_.triangles[t][c];
         const int group = info_[t].group[c];
-        if (group == none || group_at[index] == group) continue;
-        if (group_at[index] == none) {
-          group_at[index] = group;
-          mesh_.tangents[index] = tangent_of(group, index);
-          continue;
-        }
+        if (groups[index] == none) groups[index] = group;
+        if (group == none || groups[index] == group) continue;
         const uint64_t key = uint64_t(index) << 32 | uint32_t(group);
-        const auto [copy, is_new] = split.try_emplace(key, uint32_t(mesh_.positions.size()));
-        if (is_new) copy_vertex(index, tangent_of(group, index));
+        const auto [copy, is_new] = copies.try_emplace(key, uint32_t(sources.size()));
+        if (is_new) {
+          sources.push_back(index);
+          groups.push_back(group);
+        }
         index = copy->second;
       }
-    for (uint32_t i = 0; i < group_at.size(); ++i)
-      if (group_at[i] == none) mesh_.tangents[i] = tangent_of(none, i);
-  }
-
-  void copy_vertex(uint32_t index, const Vec4f& tangent) {
-    mesh_.positions.push_back(Vec3f(mesh_.positions[index]));
-    mesh_.normals.push_back(Vec3f(mesh_.normals[index]));
-    mesh_.tangents.push_back(tangent);
-    for (auto& set : mesh_.texcoords)
-      if (!set.empty()) set.push_back(Vec2f(set[index]));
-    if (!mesh_.colors.empty()) mesh_.colors.push_back(Vec4f(mesh_.colors[index]));
+    if (!copies.empty()) gather_vertices(mesh_, sources);
+    mesh_.tangents.reserve(groups.size());
+    for (size_t i = 0; i < groups.size(); ++i)
+      mesh_.tangents.push_back(tangent_of(groups[i], mesh_.normals[i]));
   }
 
   MeshDescription& mesh_;
@@ -237,30 +232,16 @@ class TangentBuilder {
   std::vector<Group> groups_;
 };
 
-template <typename V>
-std::vector<V> unshared(const std::vector<V>& values, const std::vector<Triangle>& triangles) {
-  std::vector<V> corners;
-  if (values.empty()) return corners;
-  corners.reserve(triangles.size() * 3 + 2);
-  for (const auto& t : triangles)
-    for (const uint32_t index : t) corners.push_back(values[index]);
-  return corners;
-}
-
 /// Gives each triangle vertices of its own with its own normal.
 void make_flat(MeshDescription& mesh) {
-  mesh.positions = unshared(mesh.positions, mesh.triangles);
-  for (auto& set : mesh.texcoords) set = unshared(set, mesh.triangles);
-  mesh.colors = unshared(mesh.colors, mesh.triangles);
+  unshare_vertices(mesh);
   mesh.normals.reserve(mesh.positions.size());
-  for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Vec3d p0(mesh.positions[3 * t]), p1(mesh.positions[3 * t + 1]), p2(mesh.positions[3 * t + 2]);
+  for (const auto& triangle : mesh.triangles) {
+    const Vec3d p0(mesh.positions[triangle[0]]), p1(mesh.positions[triangle[1]]),
+        p2(mesh.positions[triangle[2]]);
     const Vec3d area = cross(p1 - p0, p2 - p0);
     const Vec3f n = length_squared(area) > 0 ? Vec3f(normalize(area)) : Vec3f(0, 0, 1);
-    for (uint32_t c = 0; c < 3; ++c) {
-      mesh.normals.push_back(n);
-      mesh.triangles[t][c] = 3 * t + c;
-    }
+    mesh.normals.insert(mesh.normals.end(), 3, n);
   }
 }
 

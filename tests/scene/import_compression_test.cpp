@@ -1,0 +1,223 @@
+#include <draco/compression/encode.h>
+#include <draco/mesh/triangle_soup_mesh_builder.h>
+#include <gmock/gmock.h>
+#include <meshoptimizer.h>
+
+#include <cmath>
+
+#include "tests/scene/import_support.h"
+
+namespace vernier::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+/// A grid of n x n quads over the unit square, bent.
+struct Grid {
+  std::vector<float> positions;
+  std::vector<uint32_t> indices;
+
+  explicit Grid(uint32_t n) {
+    for (uint32_t y = 0; y <= n; ++y)
+      for (uint32_t x = 0; x <= n; ++x) {
+        const float u = float(x) / float(n), v = float(y) / float(n);
+        positions.insert(positions.end(), {u, v, u * v});
+      }
+    for (uint32_t y = 0; y < n; ++y)
+      for (uint32_t x = 0; x < n; ++x) {
+        const uint32_t a = y * (n + 1) + x, b = a + n + 1;
+        indices.insert(indices.end(), {a, a + 1, b, a + 1, b + 1, b});
+      }
+  }
+};
+
+json meshopt_view(int buffer_view_bytes, size_t count, size_t stride, const char* mode,
+                  const char* filter = "NONE") {
+  return {{"buffer", 0},          {"byteLength", buffer_view_bytes},
+          {"byteStride", stride}, {"count", count},
+          {"mode", mode},         {"filter", filter}};
+}
+
+/// The grid with positions and indices compressed, in buffer 0; buffer 1 is the fallback nobody has.
+GltfFile meshopt_grid(const Grid& grid) {
+  const size_t vertices = grid.positions.size() / 3;
+  std::vector<uint8_t> packed_positions(meshopt_encodeVertexBufferBound(vertices, 12));
+  packed_positions.resize(meshopt_encodeVertexBuffer(packed_positions.data(), packed_positions.size(),
+                                                     grid.positions.data(), vertices, 12));
+  std::vector<uint8_t> packed_indices(meshopt_encodeIndexBufferBound(grid.indices.size(), vertices));
+  packed_indices.resize(meshopt_encodeIndexBuffer(packed_indices.data(), packed_indices.size(),
+                                                  grid.indices.data(), grid.indices.size()));
+  GltfFile file;
+  json position_view = meshopt_view(int(packed_positions.size()), vertices, 12, "ATTRIBUTES");
+  json index_view = meshopt_view(int(packed_indices.size()), grid.indices.size(), 4, "TRIANGLES");
+  position_view["byteOffset"] = 0;
+  file.buffer.assign(packed_positions.begin(), packed_positions.end());
+  index_view["byteOffset"] = file.buffer.size();
+  file.buffer.append(packed_indices.begin(), packed_indices.end());
+  file.json["buffers"] = {
+      {{"uri", "data.bin"}, {"byteLength", file.buffer.size()}},
+      {{"byteLength", 1 << 20}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
+  file.add("bufferViews", {{"buffer", 1},
+                           {"byteLength", vertices * 12},
+                           {"byteStride", 12},
+                           {"extensions", {{"EXT_meshopt_compression", position_view}}}});
+  file.add("bufferViews", {{"buffer", 1},
+                           {"byteLength", grid.indices.size() * 4},
+                           {"extensions", {{"EXT_meshopt_compression", index_view}}}});
+  file.add("accessors", {{"bufferView", 0}, {"componentType", 5126}, {"count", vertices}, {"type", "VEC3"}});
+  file.add("accessors",
+           {{"bufferView", 1}, {"componentType", 5125}, {"count", grid.indices.size()}, {"type", "SCALAR"}});
+  file.json["extensionsUsed"] = file.json["extensionsRequired"] = {"EXT_meshopt_compression"};
+  file.add_mesh({{"POSITION", 0}}, {{"indices", 1}});
+  return file;
+}
+
+/// The corners of all triangles, in an order that does not depend on how they are numbered.
+std::vector<std::array<float, 9>> sorted_triangles(const std::vector<Vec3f>& positions,
+                                                   const std::vector<Triangle>& triangles) {
+  std::vector<std::array<float, 9>> sorted;
+  for (const auto& t : triangles) {
+    // The smallest corner first, winding kept.
+    size_t first = 0;
+    const auto key = [&](size_t c) {
+      const Vec3f& p = positions[t[c % 3]];
+      return std::array<float, 3>{p.x, p.y, p.z};
+    };
+    for (size_t c = 1; c < 3; ++c)
+      if (key(c) < key(first)) first = c;
+    std::array<float, 9> corners{};
+    for (size_t c = 0; c < 3; ++c) std::copy_n(key(first + c).begin(), 3, corners.begin() + 3 * c);
+    sorted.push_back(corners);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  return sorted;
+}
+
+std::vector<std::array<float, 9>> sorted_triangles(const Grid& grid) {
+  std::vector<Vec3f> positions;
+  for (size_t i = 0; i < grid.positions.size(); i += 3)
+    positions.emplace_back(grid.positions[i], grid.positions[i + 1], grid.positions[i + 2]);
+  std::vector<Triangle> triangles;
+  for (size_t i = 0; i < grid.indices.size(); i += 3)
+    triangles.push_back({grid.indices[i], grid.indices[i + 1], grid.indices[i + 2]});
+  return sorted_triangles(positions, triangles);
+}
+
+TEST(ImportCompression, DecodesMeshopt) {
+  const Grid grid(17);
+  const MeshDescription mesh = meshopt_grid(grid).import().meshes.at(0);
+  EXPECT_EQ(sorted_triangles(mesh.positions, mesh.triangles), sorted_triangles(grid));
+}
+
+TEST(ImportCompression, DecodesMeshoptFilters) {
+  const std::vector<float> normals = {0, 0, 1, 0, 0, 1, .6f, .8f, 0, 0, 0, 1, 0, 1, 0, 0, 0, 1};
+  std::vector<float> four_wide(12, 0.f);
+  for (size_t i = 0; i < 3; ++i)
+    std::copy_n(normals.begin() + 3 * ptrdiff_t(i) + 3, 3, four_wide.begin() + 4 * ptrdiff_t(i));
+  std::vector<int16_t> encoded(12);
+  meshopt_encodeFilterOct(encoded.data(), 3, 8, 16, four_wide.data());
+  std::vector<uint8_t> packed(meshopt_encodeVertexBufferBound(3, 8));
+  packed.resize(meshopt_encodeVertexBuffer(packed.data(), packed.size(), encoded.data(), 3, 8));
+
+  GltfFile file;
+  const int positions = file.add_accessor(GltfFile::triangle_positions(), "VEC3");
+  const int view = file.add_view(packed);
+  json compression = meshopt_view(int(packed.size()), 3, 8, "ATTRIBUTES", "OCTAHEDRAL");
+  compression["byteOffset"] = file.json["bufferViews"][size_t(view)]["byteOffset"];
+  file.json["bufferViews"][size_t(view)] = {{"buffer", 0},
+                                            {"byteLength", 24},
+                                            {"byteStride", 8},
+                                            {"extensions", {{"EXT_meshopt_compression", compression}}}};
+  const int accessor = file.add(
+      "accessors",
+      {{"bufferView", view}, {"componentType", 5122}, {"normalized", true}, {"count", 3}, {"type", "VEC3"}});
+  file.add_mesh({{"POSITION", positions}, {"NORMAL", accessor}});
+  const auto decoded = file.import().meshes.at(0).normals;
+  EXPECT_NEAR(length(decoded.at(1) - Vec3f(.6f, .8f, 0)), 0, 1e-3);
+}
+
+TEST(ImportCompression, RejectsDamagedMeshopt) {
+  GltfFile file = meshopt_grid(Grid(4));
+  file.buffer[0] = 'x';
+  EXPECT_THAT(import_error(file),
+              HasSubstr("/bufferViews/0/extensions/EXT_meshopt_compression: the compressed data"));
+  const auto with = [](const char* property, const json& value) {
+    GltfFile changed = meshopt_grid(Grid(4));
+    changed.json["bufferViews"][0]["extensions"]["EXT_meshopt_compression"][property] = value;
+    return import_error(changed);
+  };
+  EXPECT_THAT(with("byteStride", 14), HasSubstr("byteStride must be a multiple of 4"));
+  EXPECT_THAT(with("count", 2000000000), HasSubstr("cannot come out of"));
+  EXPECT_THAT(with("filter", "QUATERNION"), HasSubstr("byteStride of 8"));
+  EXPECT_THAT(with("byteLength", 1 << 20), HasSubstr("are not in buffer 0"));
+  EXPECT_THAT(with("count", 24), HasSubstr("/accessors/0: 25 elements need 300 bytes"));
+  EXPECT_THAT(with("mode", "TRIANGLES"), HasSubstr("byteStride of indices"));
+}
+
+/// The grid through Draco's encoder, with positions of 16 bits.
+GltfFile draco_grid(const Grid& grid) {
+  draco::TriangleSoupMeshBuilder builder;
+  builder.Start(int(grid.indices.size() / 3));
+  const int attribute = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+  for (uint32_t f = 0; f < grid.indices.size() / 3; ++f) {
+    const auto corner = [&](uint32_t c) { return &grid.positions[3 * size_t(grid.indices[3 * f + c])]; };
+    builder.SetAttributeValuesForFace(attribute, draco::FaceIndex(f), corner(0), corner(1), corner(2));
+  }
+  const auto mesh = builder.Finalize();
+  draco::Encoder encoder;
+  encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, 16);
+  draco::EncoderBuffer encoded;
+  EXPECT_TRUE(encoder.EncodeMeshToBuffer(*mesh, &encoded).ok());
+
+  GltfFile file;
+  const int view = file.add_view(std::vector<char>(encoded.data(), encoded.data() + encoded.size()));
+  const int positions =
+      file.add("accessors", {{"componentType", 5126}, {"count", mesh->num_points()}, {"type", "VEC3"}});
+  const int indices =
+      file.add("accessors", {{"componentType", 5125}, {"count", grid.indices.size()}, {"type", "SCALAR"}});
+  file.json["extensionsUsed"] = file.json["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+  const json extension = {{"bufferView", view},
+                          {"attributes", {{"POSITION", mesh->attribute(attribute)->unique_id()}}}};
+  file.add_mesh({{"POSITION", positions}},
+                {{"indices", indices}, {"extensions", {{"KHR_draco_mesh_compression", extension}}}});
+  return file;
+}
+
+TEST(ImportCompression, DecodesDraco) {
+  const Grid grid(9);
+  const MeshDescription mesh = draco_grid(grid).import().meshes.at(0);
+  const auto decoded = sorted_triangles(mesh.positions, mesh.triangles), expected = sorted_triangles(grid);
+  ASSERT_EQ(decoded.size(), expected.size());
+  // Centroids, since quantisation may change which corner is smallest.
+  const auto centroids = [](const std::vector<std::array<float, 9>>& triangles) {
+    std::vector<std::array<int, 3>> rounded;
+    for (const auto& t : triangles) {
+      std::array<int, 3> centre{};
+      for (size_t c = 0; c < 3; ++c) centre[c] = int(std::lround((t[c] + t[c + 3] + t[c + 6]) / 3 * 1000));
+      rounded.push_back(centre);
+    }
+    std::sort(rounded.begin(), rounded.end());
+    return rounded;
+  };
+  EXPECT_EQ(centroids(decoded), centroids(expected));
+}
+
+TEST(ImportCompression, RejectsDamagedDraco) {
+  GltfFile file = draco_grid(Grid(3));
+  file.json["accessors"][0]["count"] = 5;
+  EXPECT_THAT(import_error(file), HasSubstr("vertices decoded, 5 expected"));
+  file = draco_grid(Grid(3));
+  file.json["accessors"][1]["count"] = 9;
+  EXPECT_THAT(import_error(file), HasSubstr("54 indices decoded, 9 expected"));
+  file = draco_grid(Grid(3));
+  file.buffer.resize(file.buffer.size() / 2);
+  file.json["bufferViews"][0]["byteLength"] = file.buffer.size();
+  EXPECT_THAT(
+      import_error(file),
+      HasSubstr(
+          "/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression: the compressed data is damaged"));
+}
+
+}  // namespace
+}  // namespace vernier::test
