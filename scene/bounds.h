@@ -16,9 +16,19 @@ struct Bounds {
     lower = min(lower, p);
     upper = max(upper, p);
   }
+  void add(const Bounds& b) {
+    lower = min(lower, b.lower);
+    upper = max(upper, b.upper);
+  }
   Vec3f center() const { return (lower + upper) * 0.5f; }
   /// Radius of the sphere about the center through the corners; 0 when empty.
   float radius() const { return empty() ? 0 : length(upper - lower) / 2; }
+  /// Half the surface area; 0 when empty.
+  float half_area() const {
+    if (empty()) return 0;
+    const Vec3f d = upper - lower;
+    return d.x * d.y + d.y * d.z + d.z * d.x;
+  }
 };
 
 }  // namespace vernier

@@ -14,23 +14,23 @@
 
 namespace vernier {
 
-/// Where a ray meets a triangle: P = (1-u-v) v0 + u v1 + v v2, the convention of Moeller and Trumbore 1997 and of
-/// Embree. `instance` indexes Geometry::instances, `primitive` the triangles of its mesh.
+/// Where a ray meets a triangle: P = (1-u-v) v0 + u v1 + v v2, the convention of Moeller and Trumbore 1997
+/// and of Embree. `instance` indexes Geometry::instances, `primitive` the triangles of its mesh.
 struct RawHit {
   float t = 0, u = 0, v = 0;
   uint32_t instance = 0, primitive = 0;
 };
 
-/// Decides whether a hit counts (alpha coverage). Must be a pure function of its arguments and callable from many
-/// threads.
+/// Decides whether a hit counts (alpha coverage). Must be a pure function of its arguments and callable from
+/// many threads.
 class HitFilter {
  public:
   virtual ~HitFilter() = default;
   virtual bool accept(const Ray& ray, const RawHit& hit) const = 0;
 };
 
-/// Triangles in one coordinate system; the arrays must outlive the accelerator and be readable 16 bytes past the last
-/// position (Embree loads four floats).
+/// Triangles in one coordinate system; the arrays must outlive the accelerator and be readable 16 bytes past
+/// the last position (Embree loads four floats).
 struct GeometryMesh {
   std::span<const Vec3f> positions;
   std::span<const Triangle> triangles;
@@ -38,7 +38,8 @@ struct GeometryMesh {
 
 struct GeometryInstance {
   uint32_t mesh = 0;
-  Transform to_world;     ///< identity: the mesh is in world space already and needs no second level
+  Transform to_world;     ///< identity: the mesh is in world space already and
+                          ///< needs no second level
   bool filtered = false;  ///< ask Geometry::filter about hits on this instance
 };
 
@@ -53,9 +54,15 @@ struct AcceleratorStats {
   size_t bytes = 0;  ///< of the structure, without vertices and indices
 };
 
-/// Answers ray queries over fixed geometry. Rays may have any finite non-zero direction; an invalid ray (NaN, infinite
-/// origin, zero direction) misses. Triangles with a vertex that is not finite, or with no area, are never hit.
-/// Both sides of a triangle count. All queries are callable from many threads.
+/// What one query looks at.
+struct QueryCost {
+  size_t nodes = 0;   ///< boxes of children tested together
+  size_t blocks = 0;  ///< of up to four triangles
+};
+
+/// Answers ray queries over fixed geometry. Rays may have any finite non-zero direction; an invalid ray (NaN,
+/// infinite origin, zero direction) misses. Triangles with a vertex that is not finite, or with no area, are
+/// never hit. Both sides of a triangle count. All queries are callable from many threads.
 class Accelerator {
  public:
   virtual ~Accelerator() = default;
@@ -68,6 +75,8 @@ class Accelerator {
   virtual void all_hits(const Ray& ray, std::vector<RawHit>& sorted) const = 0;
 
   virtual AcceleratorStats stats() const = 0;
+  /// What closest(ray) looks at; empty where the accelerator cannot tell.
+  virtual std::optional<QueryCost> closest_cost(const Ray&) const { return {}; }
 };
 
 /// One line of the table of accelerators.

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+
+#ifdef __SSE2__
+#include <immintrin.h>
+#endif
+
+// Four and eight floats at once, through the vector types of GCC and Clang: arithmetic, comparison and ?:
+// work lane by lane on any target. Vectors are passed by reference, because passing eight lanes by value has
+// no stable ABI below AVX.
+
+namespace vernier {
+
+using Float4 = float __attribute__((vector_size(16)));
+using Float8 = float __attribute__((vector_size(32)));
+using Mask4 = int32_t __attribute__((vector_size(16)));  ///< lanes are 0 or -1
+using Mask8 = int32_t __attribute__((vector_size(32)));
+
+/// Bit i is lane i.
+inline unsigned lane_bits(const Mask4& mask) {
+#ifdef __SSE2__
+  return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<const __m128&>(mask)));
+#else
+  unsigned bits = 0;
+  for (unsigned lane = 0; lane < 4; ++lane) bits |= (mask[lane] & 1u) << lane;
+  return bits;
+#endif
+}
+
+inline unsigned lane_bits(const Mask8& mask) {
+#ifdef __AVX__
+  return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<const __m256&>(mask)));
+#else
+  unsigned bits = 0;
+  for (unsigned lane = 0; lane < 8; ++lane) bits |= (mask[lane] & 1u) << lane;
+  return bits;
+#endif
+}
+
+/// `a` where it is the greater, else `b`: a NaN in `a` gives `b`.
+inline void keep_greater(const Float8& a, Float8& b) { b = a > b ? a : b; }
+/// `a` where it is the smaller, else `b`: a NaN in `a` gives `b`.
+inline void keep_smaller(const Float8& a, Float8& b) { b = a < b ? a : b; }
+
+}  // namespace vernier

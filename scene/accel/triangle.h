@@ -1,0 +1,100 @@
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "core/math/ray.h"
+#include "core/math/vec.h"
+
+// Two tests of a ray against one triangle. Both sides count, and u, v weigh the second and third vertex as in
+// Embree. They do not look at the ray's interval: the caller compares t.
+
+namespace vernier {
+
+struct TriangleHit {
+  float t, u, v;
+};
+
+/// Moeller and Trumbore 1997, "Fast, Minimum Storage Ray/Triangle Intersection", JGT 2(1), eq. 6. Rays aimed
+/// at an edge may slip between the two triangles that share it.
+inline std::optional<TriangleHit> intersect_moeller_trumbore(const Ray& ray, const Vec3f& v0, const Vec3f& v1,
+                                                             const Vec3f& v2) {
+  const Vec3f e1 = v1 - v0, e2 = v2 - v0, s = ray.origin - v0;
+  const Vec3f p = cross(ray.direction, e2), q = cross(s, e1);
+  const float det = dot(p, e1);
+  if (det == 0) return {};
+  const float inv_det = 1 / det;
+  const float u = dot(p, s) * inv_det, v = dot(q, ray.direction) * inv_det;
+  if (!(u >= 0 && v >= 0 && u + v <= 1)) return {};
+  return TriangleHit{dot(q, e2) * inv_det, u, v};
+}
+
+/// A ray as the watertight test sees it: the direction's largest axis is kz, and a shear along it makes the
+/// ray a line of constant x = y = 0.
+struct ShearedRay {
+  Vec3f origin;
+  int kx, ky, kz;
+  float sx, sy, dz;
+
+  ShearedRay(const Vec3f& o, const Vec3f& d) : origin(o) {
+    const Vec3f size = abs(d);
+    kz = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+    kx = (kz + 1) % 3;
+    ky = (kx + 1) % 3;
+    dz = d[kz];
+    sx = d[kx] / dz;
+    sy = d[ky] / dz;
+  }
+};
+
+/// Barycentric weights of the point (0, 0) in the triangle a, b, c of the plane; empty when it is outside.
+/// Computed in double, where the products of floats are exact and so the signs of the edge functions are
+/// those of the real numbers.
+inline std::optional<Vec3f> barycentrics_in_double(const Vec2f& a, const Vec2f& b, const Vec2f& c) {
+  const auto edge = [](const Vec2f& p, const Vec2f& q) { return double(p.x) * q.y - double(p.y) * q.x; };
+  const double u = edge(c, b), v = edge(a, c), w = edge(b, a), det = u + v + w;
+  if (!((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0)) || det == 0) return {};
+  return Vec3f(float(u / det), float(v / det), float(w / det));
+}
+
+/// Woop, Benthin, Wald 2013, "Watertight Ray/Triangle Intersection", JCGT 2(1). The vertices are sheared into
+/// the ray's frame, each by the same operations whichever triangle it belongs to; after that the edge
+/// functions have exact signs: the rounded products of a float difference compare as the exact ones do or
+/// equal, and then double decides. So of the triangles around an edge or vertex that the ray meets from one
+/// side, at least one is hit. Departures from the paper: both sides count, and the weights are divided by
+/// their sum before they weigh t, so that only squares of lengths may overflow, not cubes. triangle_block.h
+/// has the same operations on four triangles.
+inline std::optional<TriangleHit> intersect_watertight(const ShearedRay& ray, const Vec3f& v0,
+                                                       const Vec3f& v1, const Vec3f& v2) {
+  const Vec3f a = v0 - ray.origin, b = v1 - ray.origin, c = v2 - ray.origin;
+  const float az = a[ray.kz], bz = b[ray.kz], cz = c[ray.kz];
+  const float ax = a[ray.kx] - ray.sx * az, ay = a[ray.ky] - ray.sy * az;
+  const float bx = b[ray.kx] - ray.sx * bz, by = b[ray.ky] - ray.sy * bz;
+  const float cx = c[ray.kx] - ray.sx * cz, cy = c[ray.ky] - ray.sy * cz;
+  float u = cx * by - cy * bx, v = ax * cy - ay * cx, w = bx * ay - by * ax;
+  if (u == 0 || v == 0 || w == 0) {
+    const auto weights = barycentrics_in_double({ax, ay}, {bx, by}, {cx, cy});
+    if (!weights) return {};
+    u = weights->x;
+    v = weights->y;
+    w = weights->z;
+  } else {
+    if (!((u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0))) return {};
+    const float det = u + v + w;
+    u = u / det;
+    v = v / det;
+    w = w / det;
+  }
+  return TriangleHit{(u * az + v * bz + w * cz) / ray.dz, v, w};
+}
+
+/// Whether rays can hit the triangle at all: finite vertices and an area. The products are exact unless
+/// coordinates differ by more than 2^29 in size.
+inline bool is_hittable(const Vec3f& v0, const Vec3f& v1, const Vec3f& v2) {
+  if (!is_finite(v0) || !is_finite(v1) || !is_finite(v2)) return false;
+  const Vec3d n = cross(Vec3d(v1) - Vec3d(v0), Vec3d(v2) - Vec3d(v0));
+  return n.x != 0 || n.y != 0 || n.z != 0;
+}
+
+}  // namespace vernier

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scene/accel/accelerator.h"
+#include "scene/accel/triangle_block.h"
+#include "scene/accel/wide_tree.h"
+
+namespace vernier {
+
+/// The triangles of one structure, numbered through: either one mesh in its own space, or all that lie in
+/// world space.
+class TriangleSet {
+ public:
+  /// To be called by increasing instance.
+  void add(const GeometryMesh& mesh, uint32_t instance);
+
+  std::array<Vec3f, 3> corners(uint32_t triangle) const;
+
+  /// Bounds and number of each triangle that can be hit at all, in order.
+  std::vector<BuildItem> items() const;
+
+  /// The block of one to four triangles, by number.
+  TriangleBlock block(std::span<const uint32_t> triangles) const;
+
+  /// Reads the vertices of a block again.
+  void reload(TriangleBlock& block) const;
+
+ private:
+  struct Part {
+    GeometryMesh mesh;
+    uint32_t instance, first;
+  };
+  const Part& part_of(uint32_t triangle) const;
+
+  std::vector<Part> parts_;
+  uint32_t size_ = 0;
+};
+
+Bounds bounds_of(const TriangleBlock& block);
+
+}  // namespace vernier
