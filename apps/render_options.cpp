@@ -32,12 +32,22 @@ void parse_seed(const std::string& text) {
 
 void add_quality_flags(CLI::App& command, RenderFlags& flags) {
   command.option_defaults()->group("Picture and effort");
-  command.add_option("--spp", flags.spp, "samples a pixel (64 unless --time is given)")
+  command.add_option("--spp", flags.spp, "samples a pixel on average (64 unless --time or --error is given)")
       ->check(whole_number(1, 1 << 30))
       ->type_name("N");
   command.add_option("--time", flags.time, "stop rendering after this long: 90s, 10m, 1.5h")
       ->check(parsed_by(parse_seconds))
       ->type_name("TIME");
+  command
+      .add_option("--error", flags.error,
+                  "stop when the picture's relative RMSE is estimated at this: 1%, 0.01")
+      ->check(parsed_by(parse_fraction))
+      ->type_name("ERROR");
+  command
+      .add_option("--adaptive", flags.adaptive, "spend samples where they lower the picture's error: on, off")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->type_name("on|off")
+      ->capture_default_str();
   command
       .add_option("--size,--resolution", flags.size, "of the picture (the camera's shape, 1280 pixels long)")
       ->check(parsed_by(parse_pixel_size))
@@ -143,7 +153,9 @@ RenderOptions make_options(const RenderFlags& flags) {
   RenderOptions options;
   options.seed = flags.seed;
   if (!flags.time.empty()) options.time_limit = parse_seconds(flags.time);
-  options.spp = flags.spp.value_or(flags.time.empty() ? 64 : 0);
+  if (!flags.error.empty()) options.target_error = parse_fraction(flags.error);
+  options.adaptive = flags.adaptive == "on";
+  options.spp = flags.spp.value_or(flags.time.empty() && flags.error.empty() ? 64 : 0);
   if (!flags.size.empty()) {
     const PixelSize size = parse_pixel_size(flags.size);
     options.width = size.width;
@@ -161,17 +173,22 @@ bool equal_ignoring_case(std::string_view a, std::string_view b) {
                     [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
-/// raycast's pictures are data: they go to the display unchanged unless a view was asked for.
+/// The view is the one asked for, else the config's default, but for raycast's pictures: they are data and go
+/// to the display unchanged where the config has a raw view.
 DisplayOptions choose_display(const RenderFlags& flags) {
   DisplayOptions display = flags.display;
+  const bool asked = !display.view.empty() || !display.config.empty();
+  if (!asked && std::none_of(flags.outputs.begin(), flags.outputs.end(), is_display_file)) return display;
   const std::vector<std::string> views = display_views(display);
   if (!display.view.empty()) {
     if (std::find(views.begin(), views.end(), display.view) == views.end())
       throw_unknown_name("view", display.view, views);
-  } else if (flags.integrator == "raycast") {
+    return display;
+  }
+  display.view = views.front();
+  if (flags.integrator == "raycast")
     for (const auto& view : views)
       if (equal_ignoring_case(view, "raw")) display.view = view;
-  }
   return display;
 }
 
