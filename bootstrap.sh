@@ -81,7 +81,8 @@ deps() {
     return
   fi
   say "deps: installing ${install[*]}"
-  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${install[@]}"
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q -o DPkg::Lock::Timeout=600 \
+    --no-install-recommends "${install[@]}"
 }
 
 # --- build ---
