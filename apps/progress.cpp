@@ -27,6 +27,7 @@ std::string describe(const RenderProgress& progress, int spp) {
   text += " spp";
   if (progress.seconds > 0)
     text += fmt::format(", {}samples/s", format_count(double(progress.samples) / progress.seconds));
+  if (progress.error) text += fmt::format(", error {:.3g} %", 100 * progress.error->rel_rmse);
   if (const auto left = time_left(progress)) text += fmt::format(", {} left", format_seconds(*left));
   return text;
 }
@@ -54,6 +55,7 @@ void print_json(const RenderProgress& progress) {
       {"samples_per_pixel", progress.samples_per_pixel},
       {"samples", progress.samples},
       {"rays", progress.rays.camera + progress.rays.bounce + progress.rays.shadow}};
+  if (progress.error) line["rel_rmse"] = progress.error->rel_rmse;
   if (const auto left = time_left(progress)) line["seconds_left"] = *left;
   fmt::print(stderr, "{}\n", line.dump());
 }

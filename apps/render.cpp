@@ -41,9 +41,9 @@ void warn_of_bad_samples(const RenderResult& result, const RenderFlags& flags, N
   if (!result.bad_sample_examples.empty()) {
     const BadSample& first = result.bad_sample_examples.front();
     replay = fmt::format(
-        "; sample {} of pixel {},{} is one, and the same command with --crop 1x1+{}+{} --spp {} --seed {} "
+        "; pixel {},{} has one, and the same command with --crop 1x1+{}+{} --spp {} --adaptive off --seed {} "
         "replays it",
-        first.index, first.x, first.y, first.x, first.y, first.index + 1, flags.seed);
+        first.x, first.y, first.x, first.y, 2 * (first.index + 1), flags.seed);
   }
   log.add({Notice::Severity::warning,
            {},
@@ -115,7 +115,7 @@ ExitCode run_render(const RenderFlags& flags, const std::string& command_line) {
   warn_of_bad_samples(result, flags, log);
 
   watch.lap();
-  write_pictures(request, result.film.mean(), image_metadata(report, flags, result));
+  write_pictures(request, result.film.image(), image_metadata(report, flags, result));
   report.output_seconds = watch.lap();
   if (!flags.stats.empty())
     write_text_file(flags.stats, to_text(stats_json(report, flags, result, log)) + "\n");

@@ -29,7 +29,8 @@ struct RenderFlags {
   std::string accelerator;
 
   std::optional<int> spp;
-  std::string time, size, crop;
+  std::string time, error, size, crop;
+  std::string adaptive = "on";
   uint64_t seed = 0;
   unsigned threads = 0;
 

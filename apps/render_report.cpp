@@ -1,7 +1,9 @@
 #include "apps/render_report.h"
 
 #include <fmt/format.h>
+
 #include <fmt/ranges.h>
+#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -28,6 +30,8 @@ std::string_view name(StopReason reason) {
       return "samples";
     case StopReason::time:
       return "time";
+    case StopReason::error:
+      return "error";
     case StopReason::interrupted:
       return "interrupted";
   }
@@ -53,6 +57,34 @@ Json picture_json(const RenderReport& report, const RenderFlags& flags, const Re
   return picture;
 }
 
+/// A figure that JSON can hold: null while it is not known.
+Json known(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json error_json(const ErrorEstimate& error) {
+  return {{"rel_rmse", known(error.rel_rmse)},
+          {"low", known(error.low)},
+          {"high", known(error.high)},
+          {"confidence", 0.95},
+          {"unreliable", error.unreliable}};
+}
+
+Json convergence_json(const RenderResult& result) {
+  Json rows = Json::array();
+  for (const auto& [seconds, spp, error] : result.convergence)
+    rows.push_back({{"seconds", seconds}, {"samples_per_pixel", spp}, {"error", error_json(error)}});
+  return rows;
+}
+
+/// "error 1.02 % (1.01 to 1.03 %)"; empty while it is not known.
+std::string error_text(const ErrorEstimate& error) {
+  if (!std::isfinite(error.rel_rmse)) return "";
+  std::string text = fmt::format(", error {:.3g} % ({:.3g} to {:.3g} %)", 100 * error.rel_rmse,
+                                 100 * error.low, 100 * error.high);
+  if (error.unreliable >= 0.001)
+    text += fmt::format(", {:.1f} % of pixels not to be trusted", 100 * error.unreliable);
+  return text;
+}
+
 Json rays_json(const RenderResult& result) {
   return {{"camera", result.rays.camera},
           {"bounce", result.rays.bounce},
@@ -65,7 +97,7 @@ Json rays_json(const RenderResult& result) {
 Json bad_samples_json(const RenderResult& result) {
   Json examples = Json::array();
   for (const BadSample& sample : result.bad_sample_examples)
-    examples.push_back({{"x", sample.x}, {"y", sample.y}, {"index", sample.index}});
+    examples.push_back({{"x", sample.x}, {"y", sample.y}, {"half", sample.half}, {"index", sample.index}});
   return {{"count", result.bad_samples}, {"examples", examples}};
 }
 
@@ -87,6 +119,11 @@ Metadata image_metadata(const RenderReport& report, const RenderFlags& flags, co
       {"vernier:stoppedBy", std::string(name(result.reason))},
       {"vernier:size", fmt::format("{}x{}", report.options.width, report.options.height)},
   };
+  if (std::isfinite(result.error.rel_rmse)) {
+    metadata["vernier:relRmse"] = fmt::format("{:.6g}", result.error.rel_rmse);
+    metadata["vernier:relRmse95"] = fmt::format("{:.6g} {:.6g}", result.error.low, result.error.high);
+    metadata["vernier:unreliablePixels"] = fmt::format("{:.6g}", result.error.unreliable);
+  }
   if (report.options.crop.width > 0) metadata["vernier:crop"] = crop_text(report.options.crop);
   return metadata;
 }
@@ -105,6 +142,8 @@ Json stats_json(const RenderReport& report, const RenderFlags& flags, const Rend
             {"output", report.output_seconds},
             {"cpu", cpu_seconds()}}},
           {"rays", rays_json(result)},
+          {"error", error_json(result.error)},
+          {"convergence", convergence_json(result)},
           {"accelerator",
            {{"name", report.accelerator},
             {"build_seconds", report.accelerator_stats.build_seconds},
@@ -134,9 +173,9 @@ std::string scene_lines(const RenderReport& report) {
 }
 
 std::string summary_line(const RenderReport& report, const RenderFlags& flags, const RenderResult& result) {
-  return fmt::format("wrote {}: {}x{}, {:.4g} spp, load {}, build {}, render {}, {} rays/s",
+  return fmt::format("wrote {}: {}x{}, {:.4g} spp{}, load {}, build {}, render {}, {} rays/s",
                      fmt::join(flags.outputs, ", "), result.film.width(), result.film.height(),
-                     samples_per_pixel(result), format_seconds(report.load_seconds),
+                     samples_per_pixel(result), error_text(result.error), format_seconds(report.load_seconds),
                      format_seconds(report.build_seconds), format_seconds(result.seconds),
                      format_count(rate(total(result.rays), result.seconds)));
 }

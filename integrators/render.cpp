@@ -6,6 +6,7 @@
 #include <chrono>
 #include <mutex>
 
+#include "integrators/sample_plan.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
@@ -13,7 +14,7 @@ namespace vernier {
 namespace {
 
 constexpr int tile_size = 16;
-constexpr int largest_pass = 16;  // samples a pixel between looks at clock and target
+constexpr uint32_t pilot = 16;  // samples a pixel before any decision is taken
 constexpr size_t kept_bad_samples = 8;
 constexpr double report_interval = 0.2;  // seconds
 
@@ -30,29 +31,23 @@ class Renderer {
         crop_(options.crop.width > 0 ? options.crop : Crop{0, 0, options.width, options.height}),
         stop_(stop),
         observe_(observe),
-        result_{Film(crop_.width, crop_.height), StopReason::samples, 0, 0, {}, 0, {}} {}
+        result_(Film(crop_.width, crop_.height)) {}
 
   RenderResult run() {
-    int64_t done = 0;
-    while (options_.spp == 0 || done < options_.spp) {
-      // Passes double, so that a first picture comes soon and each end is a stratified set of samples.
-      int64_t pass = std::clamp<int64_t>(done, 1, largest_pass);
-      if (options_.spp > 0) pass = std::min<int64_t>(pass, options_.spp - done);
-      render_pass(done, pass);
-      if (stop_ || (done > 0 && out_of_time())) break;
-      done += pass;
-      // Time counts from the second pass on: the first always completes, so that every pixel has a sample.
-      if (out_of_time()) break;
+    uint32_t done = 0;
+    while (!reason_) {
+      const uint32_t count = next_pass(done);
+      const bool may_adapt = options_.adaptive && done >= pilot;
+      const SamplePlan plan =
+          may_adapt ? SamplePlan::adaptive(result_.film, count) : SamplePlan::uniform(result_.film, count);
+      render_pass(plan, done == 0);
+      done += count;
+      look(done);
     }
-    if (stop_)
-      result_.reason = StopReason::interrupted;
-    else if (options_.spp == 0 || done < options_.spp)
-      result_.reason = StopReason::time;
+    result_.reason = *reason_;
+    result_.error = estimate_error(result_.film);
     result_.seconds = seconds();
-    std::sort(result_.bad_sample_examples.begin(), result_.bad_sample_examples.end(),
-              [](const auto& a, const auto& b) {
-                return std::tie(a.index, a.y, a.x) < std::tie(b.index, b.y, b.x);
-              });
+    std::sort(result_.bad_sample_examples.begin(), result_.bad_sample_examples.end());
     return std::move(result_);
   }
 
@@ -64,35 +59,69 @@ class Renderer {
     std::vector<BadSample> bad;
   };
 
+  /// Samples drawn so far: their index goes on even where the film rejects one.
+  uint32_t& taken(int x, int y, int half) {
+    return taken_[(size_t(y) * crop_.width + x) * Film::halves + size_t(half)];
+  }
+  double samples_per_pixel() const { return double(result_.samples) / (double(crop_.width) * crop_.height); }
   double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
   bool out_of_time() const { return seconds() >= options_.time_limit; }
 
-  void render_pass(int64_t first, int64_t count) {
+  /// Passes double at first, so that a picture comes soon and stratified sets of samples are completed; later
+  /// ones are short enough to look often at clock and target, long enough that planning them costs nothing.
+  uint32_t next_pass(uint32_t done) const {
+    const uint32_t count = std::clamp(done, 2u, std::max(pilot, done / 4));
+    return options_.spp > 0 ? std::min(count, uint32_t(options_.spp) - done) : count;
+  }
+
+  /// Between passes: is it enough?
+  void look(uint32_t done) {
+    if (stop_) {
+      reason_ = StopReason::interrupted;
+    } else if (options_.spp > 0 && done >= uint32_t(options_.spp)) {
+      reason_ = StopReason::samples;
+    } else if (out_of_time()) {
+      reason_ = StopReason::time;
+    }
+    // The estimate costs as much as a few samples; looking when samples have grown by a half is often enough.
+    if (done < pilot || (double(done) < next_look_ && !reason_)) return;
+    next_look_ = done * (options_.target_error > 0 ? 1.1 : 1.5);
+    error_ = estimate_error(result_.film);
+    result_.convergence.push_back({seconds(), samples_per_pixel(), *error_});
+    if (!reason_ && options_.target_error > 0 && error_->rel_rmse <= options_.target_error)
+      reason_ = StopReason::error;
+  }
+
+  void render_pass(const SamplePlan& plan, bool first) {
     const int columns = (crop_.width + tile_size - 1) / tile_size;
     const int rows = (crop_.height + tile_size - 1) / tile_size;
     tbb::parallel_for(0, columns * rows, [&](int tile) {
-      if (stop_ || (first > 0 && out_of_time())) return;
+      // The first pass always completes unless interrupted, so that every pixel has a sample.
+      if (stop_ || (!first && out_of_time())) return;
       Totals totals;
       const int x0 = tile % columns * tile_size, y0 = tile / columns * tile_size;
       for (int y = y0; y < std::min(y0 + tile_size, crop_.height); ++y)
         for (int x = x0; x < std::min(x0 + tile_size, crop_.width); ++x)
-          for (int64_t index = first; index < first + count; ++index)
-            render_sample(x, y, uint32_t(index), totals);
+          for (int half = 0; half < Film::halves; ++half)
+            for (uint32_t count = plan.count(x, y, half); count > 0; --count)
+              render_sample(x, y, half, totals);
       merge(totals);
     });
   }
 
-  void render_sample(int x, int y, uint32_t index, Totals& totals) {
+  void render_sample(int x, int y, int half, Totals& totals) {
     const int full_x = crop_.x + x, full_y = crop_.y + y;
-    Sampler sampler(uint32_t(full_y) * uint32_t(options_.width) + uint32_t(full_x), index, options_.seed);
+    const uint32_t index = taken(x, y, half)++;
+    Sampler sampler(uint32_t(full_y) * uint32_t(options_.width) + uint32_t(full_x), index,
+                    2 * options_.seed + uint64_t(half));
     const Vec2f in_pixel = sampler.next2();
     const Ray ray = camera_.ray({float(full_x) + in_pixel.x, float(full_y) + in_pixel.y});
     const Estimate estimate = integrator_.estimate(scene_, ray, sampler);
     ++totals.samples;
     totals.rays += estimate.rays;
-    if (!result_.film.add(x, y, 0, estimate.radiance)) totals.bad.push_back({full_x, full_y, index});
+    if (!result_.film.add(x, y, half, estimate.radiance)) totals.bad.push_back({full_x, full_y, half, index});
   }
 
   void merge(const Totals& totals) {
@@ -112,10 +141,18 @@ class Renderer {
     RenderProgress p;
     p.seconds = seconds();
     p.samples = result_.samples;
-    p.samples_per_pixel = double(result_.samples) / (double(crop_.width) * crop_.height);
-    p.fraction = std::min(1.0, p.seconds / options_.time_limit);
-    if (options_.spp > 0) p.fraction = std::max(p.fraction, p.samples_per_pixel / options_.spp);
+    p.samples_per_pixel = samples_per_pixel();
     p.rays = result_.rays;
+    p.error = error_;
+    p.fraction = p.seconds / options_.time_limit;
+    if (options_.spp > 0) p.fraction = std::max(p.fraction, p.samples_per_pixel / options_.spp);
+    if (options_.target_error > 0 && !result_.convergence.empty()) {
+      // Squared error falls as one over the samples.
+      const auto& last = result_.convergence.back();
+      const double needed = last.samples_per_pixel * square(last.error.rel_rmse / options_.target_error);
+      p.fraction = std::max(p.fraction, p.samples_per_pixel / needed);
+    }
+    p.fraction = std::min(1.0, p.fraction);
     return p;
   }
 
@@ -128,6 +165,10 @@ class Renderer {
   const std::function<void(const RenderProgress&)>& observe_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   double reported_ = 0;
+  double next_look_ = 0;
+  std::optional<StopReason> reason_;
+  std::optional<ErrorEstimate> error_;
+  std::vector<uint32_t> taken_ = std::vector<uint32_t>(size_t(crop_.width) * crop_.height * Film::halves);
   std::mutex mutex_;
   RenderResult result_;
 };

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <vector>
 
+#include "core/image/error_estimate.h"
 #include "core/image/film.h"
 #include "integrators/integrator.h"
 
@@ -22,32 +24,45 @@ struct Crop {
 struct RenderOptions {
   int width = 0, height = 0;  ///< of the full picture
   Crop crop;                  ///< what is rendered; zero width: everything
-  int spp = 64;               ///< samples a pixel; 0: until time_limit or a stop
+  int spp = 64;               ///< samples a pixel on average; 0: until another limit or a stop
   double time_limit = std::numeric_limits<double>::infinity();  ///< seconds of rendering
+  double target_error = 0;  ///< relative RMSE of the image (core/image/error_estimate.h); 0: none
+  bool adaptive = true;     ///< spend samples where they lower the image's error
   uint64_t seed = 0;
 };
 
-/// State after some tiles; handed to the observer a few times a second at most, on the calling thread's
-/// behalf and never concurrently.
+/// State after some tiles; handed to the observer a few times a second at most, never concurrently.
 struct RenderProgress {
   double seconds = 0;
-  double fraction = 0;  ///< of the samples or of the time asked for, whichever is further; in [0, 1]
+  double fraction = 0;  ///< of what was asked for, by the limit that is nearest; in [0, 1]
   double samples_per_pixel = 0;
   uint64_t samples = 0;  ///< camera samples in total
   RayCounts rays;
+  std::optional<ErrorEstimate> error;  ///< as of the last pass that looked
 };
 
 /// A sample that was not finite or was negative, so that it can be replayed. x, y are in the full picture.
 struct BadSample {
   int x = 0, y = 0;
-  uint32_t index = 0;
+  int half = 0;
+  uint32_t index = 0;  ///< within the half
+  auto operator<=>(const BadSample&) const = default;
 };
 
-enum class StopReason { samples, time, interrupted };
+enum class StopReason { samples, time, error, interrupted };
 
 struct RenderResult {
+  explicit RenderResult(Film empty) : film(std::move(empty)) {}
+
   Film film;  ///< of the crop's size
   StopReason reason = StopReason::samples;
+  ErrorEstimate error;
+  /// Error after each pass that looked, in order: how this render converged.
+  struct Checkpoint {
+    double seconds, samples_per_pixel;
+    ErrorEstimate error;
+  };
+  std::vector<Checkpoint> convergence;
   double seconds = 0;
   uint64_t samples = 0;
   RayCounts rays;

@@ -89,6 +89,19 @@ double parse_seconds(std::string_view text) {
   return total;
 }
 
+double parse_fraction(std::string_view text) {
+  constexpr std::string_view expected = "a part greater than zero such as 1% or 0.01";
+  std::string_view rest = text;
+  const auto number = take_number<double>(rest);
+  if (!number) refuse(text, expected);
+  while (!rest.empty() && rest.front() == ' ') rest.remove_prefix(1);
+  const double scale = rest == "%" ? 0.01 : 1;
+  if (scale == 1 && !rest.empty()) refuse(text, expected);
+  const double part = *number * scale;
+  if (!(part > 0) || !std::isfinite(part)) refuse(text, expected);
+  return part;
+}
+
 PixelSize parse_pixel_size(std::string_view text) {
   std::string_view rest = text;
   const auto size = take_size(rest);

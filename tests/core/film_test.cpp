@@ -7,40 +7,40 @@
 namespace vernier {
 namespace {
 
-TEST(Film, MeanWeighsEverySampleAlike) {
-  Film film(2, 1, 2);
+TEST(Film, PixelIsTheMeanOfItsHalves) {
+  Film film(2, 1);
   EXPECT_TRUE(film.add(0, 0, 0, {1, 2, 3}));
   EXPECT_TRUE(film.add(0, 0, 0, {2, 4, 6}));
   EXPECT_TRUE(film.add(0, 0, 1, {6, 0, 0}));
   EXPECT_EQ(film.samples(0, 0), 3);
-  EXPECT_EQ(film.group_samples(0, 0, 0), 2);
-  EXPECT_EQ(film.group_samples(0, 0, 1), 1);
-  EXPECT_EQ(film.group_mean(0, 0, 0), Vec3d(1.5, 3, 4.5));
-  EXPECT_EQ(film.group_mean(0, 0, 1), Vec3d(6, 0, 0));
-  // Not the mean of the groups' means, which would be 3.75, 1.5, 2.25.
-  EXPECT_EQ(rgb_at(film.mean(), 0, 0), Rgb(3, 2, 3));
+  EXPECT_EQ(film.samples(0, 0, 0), 2);
+  EXPECT_EQ(film.samples(0, 0, 1), 1);
+  EXPECT_EQ(film.half_mean(0, 0, 0), Vec3d(1.5, 3, 4.5));
+  EXPECT_EQ(film.half_mean(0, 0, 1), Vec3d(6, 0, 0));
+  // Not the mean of all samples, whose weights would depend on how many there are: that would be 3, 2, 3.
+  EXPECT_EQ(rgb_at(film.image(), 0, 0), Rgb(3.75f, 1.5f, 2.25f));
 }
 
 TEST(Film, PixelWithoutSamplesIsBlack) {
-  const Film film(3, 2, 4);
+  const Film film(3, 2);
   EXPECT_EQ(film.samples(2, 1), 0);
-  EXPECT_EQ(film.group_mean(2, 1, 3), Vec3d(0, 0, 0));
-  const Image mean = film.mean();
+  EXPECT_EQ(film.half_mean(2, 1, 1), Vec3d(0, 0, 0));
+  const Image mean = film.image();
   EXPECT_EQ(mean.width, 3);
   EXPECT_EQ(mean.height, 2);
   EXPECT_EQ(mean.channels, 3);
   for (const float value : mean.values) EXPECT_EQ(value, 0);
 }
 
-TEST(Film, PixelsAndGroupsAreApart) {
-  Film film(3, 2, 2);
+TEST(Film, PixelsAndHalvesAreApart) {
+  Film film(3, 2);
   for (int y = 0; y < 2; ++y)
     for (int x = 0; x < 3; ++x)
       for (int g = 0; g < 2; ++g) EXPECT_TRUE(film.add(x, y, g, Rgb(float(x), float(y), float(g))));
   for (int y = 0; y < 2; ++y)
     for (int x = 0; x < 3; ++x) {
-      for (int g = 0; g < 2; ++g) EXPECT_EQ(film.group_mean(x, y, g), Vec3d(x, y, g));
-      EXPECT_EQ(rgb_at(film.mean(), x, y), Rgb(float(x), float(y), 0.5f));
+      for (int g = 0; g < 2; ++g) EXPECT_EQ(film.half_mean(x, y, g), Vec3d(x, y, g));
+      EXPECT_EQ(rgb_at(film.image(), x, y), Rgb(float(x), float(y), 0.5f));
     }
 }
 
@@ -55,7 +55,7 @@ TEST(Film, BadSamplesAreRefusedAndChangeNothing) {
       EXPECT_FALSE(film.add(0, 0, 0, sample)) << bad << " in channel " << c;
     }
   EXPECT_EQ(film.samples(0, 0), 1);
-  EXPECT_EQ(rgb_at(film.mean(), 0, 0), Rgb(1, 1, 1));
+  EXPECT_EQ(rgb_at(film.image(), 0, 0), Rgb(1, 1, 1));
   EXPECT_TRUE(film.add(0, 0, 0, {0, 0, 0}));
   EXPECT_TRUE(film.add(0, 0, 0, {std::numeric_limits<float>::max(), 0, 0}));
 }
@@ -66,7 +66,7 @@ TEST(Film, SumsInDouble) {
   constexpr int count = 100'000;
   // In float each of these would be lost beside 1e8.
   for (int i = 0; i < count; ++i) EXPECT_TRUE(film.add(0, 0, 0, {1, 1, 1}));
-  EXPECT_DOUBLE_EQ(film.group_mean(0, 0, 0).x, (1e8 + count) / (count + 1));
+  EXPECT_DOUBLE_EQ(film.half_mean(0, 0, 0).x, (1e8 + count) / (count + 1));
 }
 
 }  // namespace
