@@ -1,14 +1,13 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "apps/commands.h"
+#include "apps/comparison.h"
 #include "apps/messages.h"
 #include "core/base/error.h"
-#include "core/base/names.h"
+#include "core/image/colormap.h"
 #include "core/image/image_io.h"
-#include "core/image/metrics.h"
 
 namespace vernier::apps {
 namespace {
@@ -16,79 +15,23 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct CompareFlags {
-  std::string picture, reference;
+  std::string picture, reference, heatmap;
   std::vector<std::string> fail;
-  bool json = false;
+  bool json = false, no_flip = false;
+  double bias_level = 0.01;
 };
 
-/// What was measured of picture and reference.
-struct Comparison {
-  int width = 0, height = 0;
-  ImageDifference difference;
-  double peak = 1;  ///< that psnr counts from
-};
-
-/// A figure that `--fail` can limit.
-struct Metric {
-  std::string_view name;
-  std::string_view description;
-  double (*value)(const Comparison&);
-};
-
-constexpr Metric metrics[] = {
-    {"mse", "mean (x-r)^2", [](const Comparison& c) { return c.difference.mse; }},
-    {"rmse", "its square root", [](const Comparison& c) { return c.difference.rmse(); }},
-    {"relmse", "mean (x-r)^2 / (r^2 + 0.01)", [](const Comparison& c) { return c.difference.rel_mse; }},
-    {"mae", "mean |x-r|", [](const Comparison& c) { return c.difference.mae; }},
-    {"psnr", "decibels", [](const Comparison& c) { return c.difference.psnr(c.peak); }},
-    {"largest", "max |x-r|", [](const Comparison& c) { return c.difference.largest; }},
-    {"not_finite", "values that are NaN or infinite, left out of the others",
-     [](const Comparison& c) { return double(c.difference.not_finite); }},
-};
-
-/// METRIC>X or METRIC<X: when the comparison fails.
-struct Limit {
-  const Metric* metric;
-  bool above;
-  double bound;
-
-  /// A metric that is not a number fails.
-  bool broken_by(double value) const { return !(above ? value <= bound : value >= bound); }
-};
-
-Limit parse_limit(const std::string& text) {
-  const size_t sign = text.find_first_of("<>");
-  Limit limit{nullptr, sign != std::string::npos && text[sign] == '>', 0};
-  const char* end = text.data() + text.size();
-  const char* begin = sign == std::string::npos ? end : text.data() + sign + 1;
-  const auto [stopped, status] = std::from_chars(begin, end, limit.bound);
-  if (status != std::errc() || stopped != end)
-    throw Error(ErrorKind::usage, {}, "--fail",
-                fmt::format("expected METRIC>NUMBER or METRIC<NUMBER such as 'rmse>0.01', got '{}'", text));
-  limit.metric = &find_by_name(metrics, "metric", text.substr(0, sign));
-  return limit;
-}
-
-LayeredImage read(const std::string& path) {
-  if (path.empty())
-    throw Error(ErrorKind::usage,
-                "which pictures? Give a picture and its reference; see vernier compare --help");
-  return read_layers(path);
-}
-
-Comparison compare(const CompareFlags& flags) {
-  const LayeredImage picture = read(flags.picture), reference = read(flags.reference);
-  if (picture.linear != reference.linear)
-    throw Error(ErrorKind::usage,
-                fmt::format("{} holds {} and {} {}; compare pictures of one kind", flags.picture,
-                            picture.linear ? "linear light" : "display values", flags.reference,
-                            reference.linear ? "linear light" : "display values"));
-  Comparison result;
-  result.width = reference.image.width;
-  result.height = reference.image.height;
-  result.difference = difference(picture.rgb(), reference.rgb());
-  result.peak = reference.linear ? result.difference.reference_largest : 1;
-  return result;
+Json to_json(const BiasTest& bias) {
+  return {{"level", bias.level},
+          {"different", bias.different()},
+          {"pixels_tested", bias.tested},
+          {"pixels_not_finite", bias.not_finite},
+          {"pixels_differing", bias.differing},
+          {"smallest_p", bias.smallest_p},
+          {"smallest_p_at", {bias.worst_x, bias.worst_y}},
+          {"mean_difference", bias.mean_difference},
+          {"mean_difference_error", bias.mean_error},
+          {"mean_p", bias.mean_p}};
 }
 
 Json to_json(const CompareFlags& flags, const Comparison& comparison,
@@ -98,44 +41,83 @@ Json to_json(const CompareFlags& flags, const Comparison& comparison,
             {"reference", flags.reference},
             {"width", comparison.width},
             {"height", comparison.height},
+            {"values", comparison.linear ? "linear" : "display"},
             {"relmse_epsilon", 0.01},
             {"psnr_peak", comparison.peak},
             {"largest_at", {d.largest_x, d.largest_y}},
             {"mean", d.mean},
             {"reference_mean", d.reference_mean}};
-  // JSON has no infinity; equal pictures have null decibels.
-  for (const Metric& metric : metrics) json["metrics"][std::string(metric.name)] = metric.value(comparison);
+  // JSON has no infinity: the decibels of equal pictures are null.
+  for (const Metric& metric : metrics())
+    if (const auto value = metric.value(comparison)) json["metrics"][std::string(metric.name)] = *value;
+  if (comparison.flip) {
+    json["flip"] = {{"pixels_per_degree", flip_pixels_per_degree}};
+    if (comparison.linear)
+      json["flip"].update({{"start_exposure", comparison.flip->start_exposure},
+                           {"stop_exposure", comparison.flip->stop_exposure},
+                           {"exposures", comparison.flip->exposures}});
+  }
+  if (comparison.bias) json["bias"] = to_json(*comparison.bias);
   json["failed"] = failed;
   return json;
 }
 
-void print_text(const CompareFlags& flags, const Comparison& comparison) {
+/// What a metric's own line says beside its description.
+std::string note(const Metric& metric, const Comparison& comparison) {
   const ImageDifference& d = comparison.difference;
+  if (metric.name == "psnr") return fmt::format(", from a peak of {:.6g}", comparison.peak);
+  if (metric.name == "largest") return fmt::format(", at ({}, {})", d.largest_x, d.largest_y);
+  if (metric.name == "flip" && comparison.linear)
+    return fmt::format(", HDR, largest over {} exposures from {:+.2f} to {:+.2f} EV",
+                       comparison.flip->exposures, comparison.flip->start_exposure,
+                       comparison.flip->stop_exposure);
+  if (metric.name == "differing")
+    return fmt::format(", of {}, at false discovery rate {:.6g}", comparison.bias->tested,
+                       comparison.bias->level);
+  return {};
+}
+
+void print_text(const CompareFlags& flags, const Comparison& comparison) {
   const auto line = [](std::string_view name, const std::string& text) {
     fmt::print("{:<12} {}\n", name, text);
   };
-  fmt::print("{}\n", one_line(fmt::format("{} against {}, {}x{}", flags.picture, flags.reference,
-                                          comparison.width, comparison.height)));
-  for (const Metric& metric : metrics) {
-    std::string note(metric.description);
-    if (metric.name == "psnr") note += fmt::format(", from a peak of {:.6g}", comparison.peak);
-    if (metric.name == "largest") note += fmt::format(", at ({}, {})", d.largest_x, d.largest_y);
-    line(metric.name, fmt::format("{:<12.6g} {}", metric.value(comparison), note));
-  }
-  line("mean x", fmt::format("{:.6g} {:.6g} {:.6g}", d.mean[0], d.mean[1], d.mean[2]));
-  line("mean r",
-       fmt::format("{:.6g} {:.6g} {:.6g}", d.reference_mean[0], d.reference_mean[1], d.reference_mean[2]));
+  fmt::print("{}\n", one_line(fmt::format("{} against {}, {}x{}, {}", flags.picture, flags.reference,
+                                          comparison.width, comparison.height,
+                                          comparison.linear ? "linear light" : "display values")));
+  for (const Metric& metric : metrics())
+    if (const auto value = metric.value(comparison))
+      line(metric.name, fmt::format("{:<12.6g} {}{}", *value, metric.description, note(metric, comparison)));
+  const auto rgb = [](const std::array<double, 3>& v) {
+    return fmt::format("{:.6g} {:.6g} {:.6g}", v[0], v[1], v[2]);
+  };
+  line("mean x", rgb(comparison.difference.mean));
+  line("mean r", rgb(comparison.difference.reference_mean));
+  if (!comparison.bias) return;
+  line("mean x-r", fmt::format("{}, standard error {}", rgb(comparison.bias->mean_difference),
+                               rgb(comparison.bias->mean_error)));
+  line("bias", comparison.bias->different() ? "the pictures have different expectations"
+                                            : "no difference of expectation found");
 }
 
 ExitCode run_compare(const CompareFlags& flags) {
+  if (flags.picture.empty() || flags.reference.empty())
+    throw Error(ErrorKind::usage,
+                "which pictures? Give a picture and its reference; see vernier compare --help");
+  if (flags.no_flip && !flags.heatmap.empty())
+    throw Error(ErrorKind::usage, "--heatmap shows FLIP, which --no-flip leaves out; drop one of the two");
+  if (!(flags.bias_level > 0 && flags.bias_level < 1))
+    throw Error(ErrorKind::usage, {}, "--bias-level", "expected a number between 0 and 1");
   std::vector<Limit> limits;
-  for (const auto& text : flags.fail) limits.push_back(parse_limit(text));
-  const Comparison comparison = compare(flags);
+  for (const auto& text : flags.fail) limits.emplace_back(text);
+  if (!flags.heatmap.empty()) check_writable_image(flags.heatmap);
+
+  const Comparison comparison =
+      compare_files(flags.picture, flags.reference, {!flags.no_flip, flags.bias_level});
   std::vector<std::string> failed;
   for (const Limit& limit : limits)
-    if (const double value = limit.metric->value(comparison); limit.broken_by(value))
-      failed.push_back(fmt::format("{} is {:.6g}, {} {:.6g}", limit.metric->name, value,
-                                   limit.above ? "above" : "below", limit.bound));
+    if (auto complaint = limit.complaint(comparison); !complaint.empty())
+      failed.push_back(std::move(complaint));
+  if (!flags.heatmap.empty()) write_image8(flags.heatmap, colormap(comparison.flip->map), {});
   if (flags.json)
     fmt::print("{}\n",
                to_json(flags, comparison, failed).dump(2, ' ', false, Json::error_handler_t::replace));
@@ -147,7 +129,7 @@ ExitCode run_compare(const CompareFlags& flags) {
 
 std::string metric_names() {
   std::string names;
-  for (const Metric& metric : metrics) names += (names.empty() ? "" : ", ") + std::string(metric.name);
+  for (const Metric& metric : metrics()) names += (names.empty() ? "" : ", ") + std::string(metric.name);
   return names;
 }
 
@@ -161,10 +143,21 @@ void register_compare(Program& program) {
   command->add_option("R", flags->reference, "reference of the same size and kind")->type_name("");
   command->add_flag("--json", flags->json, "as JSON on standard output");
   command
+      ->add_option("--heatmap", flags->heatmap,
+                   "write the map of FLIP as .png or .jpg, dark for no difference")
+      ->type_name("FILE");
+  command
       ->add_option("--fail", flags->fail,
                    "exit with 1 when METRIC>NUMBER or METRIC<NUMBER; metrics: " + metric_names())
       ->type_name("LIMIT")
       ->allow_extra_args(false);
+  command->add_flag("--no-flip", flags->no_flip, "leave out FLIP, which takes longest");
+  command
+      ->add_option(
+          "--bias-level", flags->bias_level,
+          "part of false findings allowed to the bias test, made when both files have an error layer")
+      ->type_name("PART")
+      ->capture_default_str();
   command->callback([&program, flags] { program.run = [flags] { return run_compare(*flags); }; });
 }
 

@@ -97,6 +97,52 @@ TEST_F(Compare, DisplayPicturesCountFromOne) {
   EXPECT_EQ(json::parse(result.out)["psnr_peak"], 1);
 }
 
+TEST_F(Compare, FlipAndItsMap) {
+  const std::string map = folder_.file("map.png");
+  const json report = json::parse(compare({a_, b_, "--json", "--heatmap", map}).out);
+  EXPECT_GT(report["metrics"]["flip"], 0.1);
+  EXPECT_LE(report["metrics"]["flip"], 1);
+  EXPECT_NEAR(report["flip"]["pixels_per_degree"], 67.02, 0.01);
+  EXPECT_GE(report["flip"]["exposures"], 2);
+  const Image picture = read_image(map);
+  EXPECT_EQ(picture.width, 4);
+  EXPECT_EQ(picture.height, 3);
+  EXPECT_GT(rgb_at(picture, 2, 1).x, rgb_at(picture, 0, 0).x) << "brightest where the pictures differ";
+  EXPECT_EQ(compare({a_, b_, "--fail", "flip>0.01"}).exit_code, comparison_failed);
+  EXPECT_FALSE(json::parse(compare({a_, b_, "--json", "--no-flip"}).out)["metrics"].contains("flip"));
+}
+
+// 12x12 pictures with an error layer of 0.01 from 16 groups; one pixel is `shift` errors away.
+std::string with_error(const TemporaryFolder& folder, const std::string& name, float shift) {
+  Image image(12, 12, 6);
+  for (int i = 0; i < 144; ++i)
+    for (int c = 0; c < 6; ++c) image.values[size_t(6 * i + c)] = c < 3 ? 0.5f : 0.01f;
+  image.pixel(7, 3)[1] += shift * 0.01f;
+  write_exr(folder.file(name), image, {"R", "G", "B", "error.R", "error.G", "error.B"},
+            {{"vernier:error_groups", "16"}});
+  return folder.file(name);
+}
+
+TEST_F(Compare, BiasTestUsesBothErrorLayers) {
+  const std::string base = with_error(folder_, "0.exr", 0), near = with_error(folder_, "3.exr", 3),
+                    far = with_error(folder_, "20.exr", 20);
+  const json same = json::parse(compare({base, near, "--json"}).out)["bias"];
+  EXPECT_EQ(same["different"], false);
+  EXPECT_EQ(same["pixels_tested"], 144);
+  const ProcessResult failed = compare({base, far, "--json", "--fail", "differing>0"});
+  EXPECT_EQ(failed.exit_code, comparison_failed);
+  const json bias = json::parse(failed.out)["bias"];
+  EXPECT_EQ(bias["different"], true);
+  EXPECT_EQ(bias["pixels_differing"], 1);
+  EXPECT_EQ(bias["smallest_p_at"], json::array({7, 3}));
+  // Student's t with 30 degrees of freedom, not the normal distribution: 20 / sqrt 2 errors have p = 1e-14,
+  // times 3.
+  EXPECT_GT(bias["smallest_p"], 1e-15);
+  EXPECT_LT(bias["smallest_p"], 1e-12);
+  EXPECT_THAT(compare({base, far}).out, HasSubstr("different expectations"));
+  EXPECT_FALSE(json::parse(compare({a_, b_, "--json"}).out).contains("bias"));
+}
+
 TEST_F(Compare, UsageErrors) {
   write_exr(folder_.file("c.exr"), Image(3, 4, 3), {"R", "G", "B"}, {});
   write_image8(folder_.file("a.png"), Image8(4, 3, 3), {});
@@ -109,6 +155,10 @@ TEST_F(Compare, UsageErrors) {
       {{a_, b_, "--fail", "rmsee>1"}, "did you mean 'rmse'"},
       {{a_, folder_.file("c.exr")}, "4x3 and 3x4"},
       {{a_, folder_.file("a.png")}, "linear light"},
+      {{a_, b_, "--fail", "differing>0"}, "no error layer"},
+      {{a_, b_, "--no-flip", "--fail", "flip>0"}, "--no-flip was given"},
+      {{a_, b_, "--no-flip", "--heatmap", "x.png"}, "drop one"},
+      {{a_, b_, "--bias-level", "2"}, "between 0 and 1"},
   };
   for (const auto& [arguments, text] : cases) {
     const ProcessResult result = compare(arguments);
@@ -116,6 +166,13 @@ TEST_F(Compare, UsageErrors) {
     EXPECT_THAT(result.err, HasSubstr(text));
     EXPECT_EQ(result.err_lines().size(), 1u) << result.err;
   }
+}
+
+TEST_F(Compare, UnwritableHeatmap) {
+  const ProcessResult result = compare({a_, b_, "--heatmap", folder_.file("none/x.png")});
+  EXPECT_EQ(result.exit_code, input);
+  EXPECT_THAT(result.err, HasSubstr("does not exist"));
+  EXPECT_EQ(compare({a_, b_, "--heatmap", folder_.file("x.gif")}).exit_code, input);
 }
 
 TEST_F(Compare, FilesThatCannotBeRead) {
