@@ -60,6 +60,45 @@ TEST(Film, BadSamplesAreRefusedAndChangeNothing) {
   EXPECT_TRUE(film.add(0, 0, 0, {std::numeric_limits<float>::max(), 0, 0}));
 }
 
+TEST(Film, PixelOfOneHalfIsThatHalf) {
+  for (const int half : {0, 1}) {
+    Film film(1, 1);
+    EXPECT_TRUE(film.add(0, 0, half, {2, 4, 8}));
+    EXPECT_EQ(film.pixel(0, 0), Vec3d(2, 4, 8));
+  }
+}
+
+TEST(Film, VarianceOfAHalfsMean) {
+  Film film(1, 1);
+  EXPECT_TRUE(film.add(0, 0, 1, {1, 5, 0}));
+  EXPECT_EQ(film.half_mean_variance(0, 0, 1), Vec3d(0, 0, 0)) << "one sample shows no spread";
+  EXPECT_TRUE(film.add(0, 0, 1, {2, 5, 0}));
+  EXPECT_TRUE(film.add(0, 0, 1, {6, 5, 0}));
+  // Squared deviations from 3: 4 + 1 + 9, over (n - 1) n.
+  EXPECT_NEAR(film.half_mean_variance(0, 0, 1).x, 14.0 / 6, 1e-12);
+  EXPECT_EQ(film.half_mean_variance(0, 0, 1).y, 0);
+  EXPECT_EQ(film.half_mean_variance(0, 0, 0), Vec3d(0, 0, 0));
+}
+
+TEST(Film, VarianceIsNeverNegative) {
+  Film film(1, 1);
+  for (int i = 0; i < 1000; ++i) EXPECT_TRUE(film.add(0, 0, 0, {0.1f, 1e7f, 1e-20f}));
+  const Vec3d variance = film.half_mean_variance(0, 0, 0);
+  for (int c = 0; c < 3; ++c) EXPECT_GE(variance[c], 0);
+  EXPECT_LT(variance.y, 1e-3);
+}
+
+TEST(Film, ShareOfTheLargestSample) {
+  Film film(1, 1);
+  EXPECT_EQ(film.largest_share(0, 0), 0);
+  EXPECT_TRUE(film.add(0, 0, 0, {0, 0, 0}));
+  EXPECT_EQ(film.largest_share(0, 0), 0);
+  EXPECT_TRUE(film.add(0, 0, 0, {1, 0, 3}));
+  EXPECT_EQ(film.largest_share(0, 0), 1);
+  EXPECT_TRUE(film.add(0, 0, 1, {1, 2, 9}));
+  EXPECT_DOUBLE_EQ(film.largest_share(0, 0), 9.0 / 12);
+}
+
 TEST(Film, SumsInDouble) {
   Film film(1, 1);
   EXPECT_TRUE(film.add(0, 0, 0, {1e8f, 1e8f, 1e8f}));
