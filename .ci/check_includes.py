@@ -16,7 +16,7 @@ WRAPPED = [
     (r"OpenImageIO/hash\.h", r"scene/import/asset_files\.cpp|core/image/[^/]*\.cpp"),
     (r"OpenImageIO/(?!hash\.h).*", r"(core/image/[^/]*|tests/core/.*)\.cpp"),
     (r"OpenColorIO/.*", r"(core/image/[^/]*|tests/core/.*)\.cpp"),
-    (r"(draco|meshoptimizer).*", r"scene/import/[^/]*\.cpp"),
+    (r"(draco/.*|meshoptimizer\.h)", r"(tests/)?scene/(import/)?[^/]*\.cpp"),
     (r"CLI/.*", r"apps/.*"),
     (r"(gtest|gmock)/.*", r"tests/.*"),
 ]

@@ -19,8 +19,8 @@
 namespace vernier::apps {
 namespace {
 
-/// Of a film with one group, and the picture made from it.
-constexpr double film_bytes_per_pixel = 4 * sizeof(double) + 3 * sizeof(float);
+/// Of the film (seven numbers of eight bytes a half), and the picture made from it.
+constexpr double film_bytes_per_pixel = Film::halves * 7 * sizeof(double) + 3 * sizeof(float);
 
 /// A negative number would be taken for a large one.
 void parse_seed(const std::string& text) {

@@ -98,8 +98,9 @@ TEST(Render, SeedChangesThePicture) {
 }
 
 TEST(Render, CropIsThatPartOfTheWhole) {
-  const Image whole = rendered(cornell_box, {"--size", "40x30", "--spp", "2"});
-  const Image part = rendered(cornell_box, {"--size", "40x30", "--spp", "2", "--crop", "11x7+20+3"});
+  const Image whole = rendered(cornell_box, {"--size", "40x30", "--spp", "2", "--adaptive", "off"});
+  const Image part =
+      rendered(cornell_box, {"--size", "40x30", "--spp", "2", "--adaptive", "off", "--crop", "11x7+20+3"});
   ASSERT_EQ(part.width, 11);
   ASSERT_EQ(part.height, 7);
   for (int y = 0; y < part.height; ++y)
