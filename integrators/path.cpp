@@ -32,10 +32,12 @@ class PathIntegrator : public Integrator {
       const float lobe_choice = sampler.next1();
       const float roulette = sampler.next1();
 
-      const Shading surface = scene.shade(*hit, -ray.direction);
+      const Shading surface = scene.shade(*hit, -ray.direction, throughput);
       if (options_.light_sampling != LightSampling::bsdf) {
         const auto light = scene.sample_light(*hit, light_choice, light_point);
-        out.radiance += throughput * direct(scene, surface, light, absorption, out.rays);
+        const bool through = light && surface.is_transmitted(light->wi);
+        const Rgb medium = through ? absorption_beyond(scene.material(*hit), hit->front) : absorption;
+        out.radiance += throughput * direct(scene, surface, light, medium, out.rays);
       }
       const auto next = surface.sample(lobe_choice, direction);
       if (!next) break;

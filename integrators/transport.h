@@ -14,11 +14,13 @@ inline float power_heuristic(float pdf, float other_pdf) {
   return 1 / (1 + ratio * ratio);
 }
 
-/// Beer-Lambert: what is left of light after `distance` metres at `absorption` per metre.
+/// Beer-Lambert: what is left of light after `distance` metres, which may be infinite, at `absorption` per
+/// metre.
 inline Rgb transmittance(const Rgb& absorption, float distance) {
   if (is_black(absorption)) return {1, 1, 1};
-  return {std::exp(-absorption.x * distance), std::exp(-absorption.y * distance),
-          std::exp(-absorption.z * distance)};
+  Rgb left;
+  for (int c = 0; c < 3; ++c) left[c] = absorption[c] > 0 ? std::exp(-absorption[c] * distance) : 1;
+  return left;
 }
 
 /// Absorption on the far side of a surface crossed from its front or back. A thin surface has none behind it.

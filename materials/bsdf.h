@@ -2,17 +2,17 @@
 
 #include <variant>
 
-#include "materials/conductor.h"
 #include "materials/dielectric.h"
+#include "materials/glossy.h"
 #include "materials/lambert.h"
+#include "materials/layered.h"
 #include "materials/mixture.h"
-#include "materials/plastic.h"
 
 namespace vernier {
 
 /// All models. Made at each hit, by value, with textures already read; the contract is in
 /// materials/bsdf_sample.h. A new model is a header of its own and an entry here.
-class Bsdf : public std::variant<Lambert, Conductor, Plastic, Dielectric, Mixture> {
+class Bsdf : public std::variant<Lambert, Glossy, Dielectric, Mixture, Layered> {
  public:
   using variant::variant;
 
@@ -39,5 +39,8 @@ class Bsdf : public std::variant<Lambert, Conductor, Plastic, Dielectric, Mixtur
 
   const variant& base() const { return *this; }
 };
+
+// It is copied at each hit.
+static_assert(sizeof(Bsdf) <= 224);
 
 }  // namespace vernier

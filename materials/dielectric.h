@@ -1,12 +1,19 @@
 #pragma once
 
+#include <array>
+
 #include "materials/bsdf_sample.h"
 #include "materials/fresnel.h"
 #include "materials/ggx.h"
-#include "materials/ggx_energy.h"
 #include "materials/glass_energy.h"
 
 namespace vernier {
+
+/// Relative indices of a boundary that bends colours differently, red, green, blue, with their energy tables.
+struct Dispersion {
+  std::array<float, 3> eta;
+  std::array<const GlassEnergy*, 3> energy;
+};
 
 /// Clear boundary, smooth or GGX-rough, with exact Fresnel reflectance (Walter et al. 2007, eqs. 20, 21).
 /// With `thin` the surface is a sheet of no thickness: what passes is not bent, and rough sheets blur it like
@@ -19,19 +26,25 @@ namespace vernier {
 struct Dielectric {
   float eta = 1.5f;  ///< index of the far side over that of the side of wo
   Ggx ggx;
-  Rgb tint{1, 1, 1};           ///< multiplies what is transmitted
-  Rgb reflect_scale{1, 1, 1};  ///< multiplies the Fresnel reflectance except at total internal reflection
+  Rgb tint{1, 1, 1};  ///< multiplies what is transmitted
+  /// Reflectance of the outer side at normal and grazing incidence, between which it follows Fresnel's curve;
+  /// f0 of the index for clear glass. What the most reflected colour channel leaves is transmitted
+  /// (KHR_materials_specular).
+  Fresnel fresnel{};
   bool thin = false;
-  const GlassEnergy* energy = nullptr;  ///< of eta; needed when rough and not thin
+  const GlassEnergy* energy = nullptr;     ///< of eta; needed when rough and not thin
+  const Dispersion* dispersion = nullptr;  ///< indices of the three colours, if they differ
 
   BsdfEval eval(const Vec3f& wo, const Vec3f& wi) const {
     if (is_delta()) return {};
+    if (dispersion) return eval_dispersed(wo, wi);
     BsdfEval value = single_scattering(wo, wi);
     if (value.pdf > 0) value.f_cos /= single_albedo(wo);
     return value;
   }
 
   std::optional<BsdfSample> sample(const Vec3f& wo, float u, const Vec2f& v) const {
+    if (dispersion) return sample_dispersed(wo, u, v);
     const bool smooth = is_delta();
     const Vec3f m = smooth ? Vec3f(0, 0, 1) : ggx.sample_visible(wo, v);
     const float cos_om = dot(wo, m);
@@ -66,7 +79,16 @@ struct Dielectric {
     const Split split = boundary(wo.z);
     const float bent = thin ? 1 : eta;
     const Vec3f through = thin ? -wo : refract(wo, {0, 0, 1}, wo.z, split.cos_t);
-    return {split.reflected, split.transmitted / (bent * bent), through, std::sqrt(ggx.ax * ggx.ay)};
+    return {split.reflected, split.transmitted / (bent * bent), through, ggx.mean_width()};
+  }
+
+  /// This boundary for one colour of its dispersion.
+  Dielectric of_channel(int c) const {
+    Dielectric result = *this;
+    result.eta = dispersion->eta[size_t(c)];
+    result.energy = dispersion->energy[size_t(c)];
+    result.dispersion = nullptr;
+    return result;
   }
 
  private:
@@ -78,15 +100,16 @@ struct Dielectric {
 
   Split boundary(float cos_om) const {
     Split split;
-    const float fresnel = fresnel_dielectric(cos_om, eta, split.cos_t);
-    if (fresnel >= 1 && !thin) {
+    const float exact = fresnel_dielectric(cos_om, eta, split.cos_t);
+    if (exact >= 1 && !thin) {
       split.reflected = Rgb(1, 1, 1);
       split.transmitted = Rgb(0, 0, 0);
       split.prob = 1;
       return split;
     }
-    for (int c = 0; c < 3; ++c) split.reflected[c] = std::min(reflect_scale[c] * fresnel, 1.f);
-    split.transmitted = tint * (Rgb(1, 1, 1) - split.reflected);
+    const float cos_outside = eta < 1 && !thin ? split.cos_t : cos_om;
+    split.reflected = fresnel.along(exact, f0_from_ior(eta), cos_outside);
+    split.transmitted = tint * (1 - max_component(split.reflected));
     const float r = max_component(split.reflected), t = max_component(split.transmitted);
     split.prob = r + t > 0 ? r / (r + t) : 1;
     return split;
@@ -115,10 +138,9 @@ struct Dielectric {
   }
 
   /// Fraction of light that single_scattering() returns when it absorbs none.
-  Rgb single_albedo(const Vec3f& wo) const {
-    const float alpha = std::sqrt(ggx.ax * ggx.ay);
-    if (thin) return Rgb(1 - ggx_albedo(wo.z, alpha).missing);
-    return energy->albedo(wo.z, alpha, reflect_scale);
+  float single_albedo(const Vec3f& wo) const {
+    if (thin) return 1 - ggx_albedo(wo.z, ggx.mean_width()).missing;
+    return energy->albedo(wo.z, ggx.mean_width(), {max_component(fresnel.f0), fresnel.f90});
   }
 
   bool is_delta() const { return ggx.is_smooth() || (eta == 1 && !thin); }
@@ -134,6 +156,46 @@ struct Dielectric {
     const Split split = boundary(cos_om);
     const float visible = ggx.visible_pdf(wo, m) / (4 * cos_om);
     return {split.reflected * (visible * ggx.g2(wo, wi) / ggx.g1(wo)), split.prob * visible};
+  }
+
+  /// Each colour is scattered by its own index; sample() picks one in three, and so the densities are
+  /// averaged.
+  BsdfEval eval_dispersed(const Vec3f& wo, const Vec3f& wi) const {
+    BsdfEval sum;
+    for (int c = 0; c < 3; ++c) {
+      const BsdfEval value = of_channel(c).eval(wo, wi);
+      sum.f_cos[c] = value.f_cos[c];
+      sum.pdf += value.pdf / 3;
+    }
+    return sum;
+  }
+
+  std::optional<BsdfSample> sample_dispersed(const Vec3f& wo, float u, const Vec2f& v) const {
+    const int chosen = std::min(int(3 * u), 2);
+    auto sample = of_channel(chosen).sample(wo, std::min(3 * u - float(chosen), 0x1.fffffep-1f), v);
+    if (!sample) return sample;
+    if (!sample->is_delta()) {
+      const BsdfEval value = eval_dispersed(wo, sample->wi);
+      sample->weight = value.f_cos / value.pdf;
+      sample->pdf = value.pdf;
+    } else if (sample->is_transmitted()) {
+      // No other colour goes this way.
+      const float weight = sample->weight[chosen];
+      sample->weight = Rgb(0, 0, 0);
+      sample->weight[chosen] = 3 * weight;
+      sample->pdf /= 3;
+    } else {
+      Rgb reflected;
+      float prob = 0;
+      for (int c = 0; c < 3; ++c) {
+        const Split split = of_channel(c).boundary(wo.z);
+        reflected[c] = split.reflected[c];
+        prob += split.prob / 3;
+      }
+      sample->weight = reflected / prob;
+      sample->pdf = prob;
+    }
+    return sample;
   }
 };
 

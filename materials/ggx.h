@@ -13,6 +13,7 @@ struct Ggx {
   /// Below this width the lobe is narrower than a half-vector formed in float can resolve, and counts as a mirror.
   static constexpr float smooth_limit = 5e-4f;
   bool is_smooth() const { return std::max(ax, ay) < smooth_limit; }
+  float mean_width() const { return ax == ay ? ax : std::sqrt(ax * ay); }
 
   /// Density of facet normals m per unit projected area and solid angle.
   float d(const Vec3f& m) const {

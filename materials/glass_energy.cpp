@@ -32,7 +32,7 @@ GlassEnergy::Node GlassEnergy::integrate(float cos_theta, float alpha) const {
   const Vec3f wo(safe_sqrt(1 - z * z), 0, z);
   const Ggx ggx{alpha, alpha};
   const float lambda_o = ggx.lambda(wo);
-  double total = 0, exchange = 0;
+  double total = 0, exchange_all = 0, exchange_fresnel = 0;
   for (int k = 0; k < points; ++k) {
     const float x = (float(k * generator % points) + 0.5f) / points, y = (float(k) + 0.5f) / points;
     const Vec3f m = ggx.sample_visible(wo, {x / 2, y});
@@ -44,9 +44,11 @@ GlassEnergy::Node GlassEnergy::integrate(float cos_theta, float alpha) const {
     const float r = reflected.z > 0 ? (1 + lambda_o) / (1 + lambda_o + ggx.lambda(reflected)) : 0;
     const float t = refracted.z < 0 ? (1 + lambda_o) / (1 + lambda_o + ggx.lambda(refracted)) : 0;
     total += fresnel * r + (1 - fresnel) * t;
-    if (fresnel < 1) exchange += fresnel * (r - t);
+    if (fresnel >= 1) continue;
+    exchange_all += r - t;
+    exchange_fresnel += fresnel * (r - t);
   }
-  return {float(1 - total / points), float(exchange / points)};
+  return {float(1 - total / points), float(exchange_all / points), float(exchange_fresnel / points)};
 }
 
 const GlassEnergy::Row& GlassEnergy::row(int index) const {
@@ -59,27 +61,28 @@ const GlassEnergy::Row& GlassEnergy::row(int index) const {
   return row;
 }
 
+GlassEnergy::Node GlassEnergy::Node::mix(float t, const Node& a, const Node& b) {
+  return {lerp(t, a.missing, b.missing), lerp(t, a.exchange_all, b.exchange_all),
+          lerp(t, a.exchange_fresnel, b.exchange_fresnel)};
+}
+
 GlassEnergy::Node GlassEnergy::Row::at(float coordinate) const {
   const float x = coordinate * (cosines - 1);
   const int i = std::min(int(x), cosines - 2);
-  const float t = x - float(i);
-  return {lerp(t, nodes[i].missing, nodes[i + 1].missing), lerp(t, nodes[i].exchange, nodes[i + 1].exchange)};
+  return Node::mix(x - float(i), nodes[size_t(i)], nodes[size_t(i) + 1]);
 }
 
-Rgb GlassEnergy::albedo(float cos_theta, float alpha, const Rgb& reflect_scale) const {
+float GlassEnergy::albedo(float cos_theta, float alpha, const SchlickCurve& ends) const {
   const float a = std::clamp(alpha, least_alpha, 1.f);
   const float x = albedo_coordinate(cos_theta, a);
   const float y = std::sqrt(a) * (widths - 1);
   const int j = std::min(int(y), widths - 2);
-  const Node low = row(j).at(x), high = row(j + 1).at(x);
-  const float missing = lerp(y - float(j), low.missing, high.missing);
-  const float exchange = lerp(y - float(j), low.exchange, high.exchange);
-  Rgb result;
-  for (int c = 0; c < 3; ++c) {
-    const float change = (reflect_scale[c] - 1) * exchange;
-    result[c] = 1 - missing + (reflect_scale[c] > 1 ? std::clamp(change, 0.f, missing) : change);
-  }
-  return result;
+  const Node node = Node::mix(y - float(j), row(j).at(x), row(j + 1).at(x));
+  // The curve between the ends is offset + slope F; an infinite index leaves no curve.
+  const float f0 = f0_from_ior(eta_);
+  const float slope = f0 < 0.999f ? (ends.f90 - ends.f0) / (1 - f0) : 0;
+  const float offset = ends.f0 - slope * f0;
+  return 1 - node.missing + offset * node.exchange_all + (slope - 1) * node.exchange_fresnel;
 }
 
 }  // namespace vernier

@@ -3,7 +3,7 @@
 #include <array>
 #include <mutex>
 
-#include "core/math/vec.h"
+#include "materials/fresnel.h"
 
 namespace vernier {
 
@@ -15,19 +15,22 @@ class GlassEnergy {
   /// The table of relative index eta (far side over near side), kept for good. May be called from any thread.
   static const GlassEnergy& of(float eta);
 
-  /// Directional albedo at cos_theta in [0,1] for width alpha in [0,1] when the Fresnel reflectance, but for
-  /// total internal reflection, is multiplied by reflect_scale and what is not reflected is transmitted:
-  /// within 1e-3 for scales up to 1, 3e-3 where the indices differ by a percent; above 1 an upper bound,
-  /// because reflectance is clipped. A width seen for the first time costs some 10 ms of integration.
-  Rgb albedo(float cos_theta, float alpha, const Rgb& reflect_scale) const;
+  /// Directional albedo at cos_theta in [0,1] for width alpha in [0,1] when reflectance follows Fresnel's
+  /// curve between those of `ends` (total internal reflection stays total) and what is not reflected is
+  /// transmitted: within 1e-3, 3e-3 where the indices differ by a percent. A width seen for the first time
+  /// costs some 10 ms of integration.
+  float albedo(float cos_theta, float alpha, const SchlickCurve& ends) const;
 
   explicit GlassEnergy(float eta) : eta_(eta) {}
 
  private:
   struct Node {
-    float missing = 0;  ///< 1 - albedo with unscaled reflectance
-    float exchange =
-        0;  ///< what the albedo loses when light that is not totally reflected is transmitted instead
+    float missing = 0;  ///< 1 - albedo with Fresnel's own reflectance
+    /// What the albedo gains where light that is not totally reflected is reflected instead of transmitted:
+    /// all of it, and the share that Fresnel's curve reflects.
+    float exchange_all = 0, exchange_fresnel = 0;
+
+    static Node mix(float t, const Node& a, const Node& b);
   };
   struct Row {
     static constexpr int cosines = 64;

@@ -25,25 +25,63 @@ Rgb absorption_of(const MaterialDescription& d) {
 /// An index of 0 stands for an infinite one (KHR_materials_ior).
 float relative_index(const MaterialDescription& d) { return d.ior == 0 ? 1e6f : d.ior; }
 
+/// Indices of refraction for red, green and blue: a spread between blue and red of (n - 1) / Abbe number
+/// about the index itself (KHR_materials_dispersion).
+std::array<float, 3> dispersed_ior(const MaterialDescription& d) {
+  const float half_spread = (d.ior - 1) * 0.025f * d.dispersion;
+  return {std::max(d.ior - half_spread, 1.f), d.ior, d.ior + half_spread};
+}
+
+/// Any of these makes the scattering depend on the place.
+bool has_bsdf_texture(const MaterialDescription& d) {
+  return d.base_color_texture || d.metallic_roughness_texture || d.specular_texture ||
+         d.specular_color_texture || d.transmission_texture || d.clearcoat_texture ||
+         d.clearcoat_roughness_texture || d.sheen_color_texture || d.sheen_roughness_texture ||
+         d.anisotropy_texture || d.iridescence_texture || d.iridescence_thickness_texture ||
+         d.diffuse_transmission_texture || d.diffuse_transmission_color_texture;
+}
+
+int texcoord_of_tangents(const MaterialDescription& d) {
+  if (d.normal_texture) return d.normal_texture.texcoord;
+  if (d.clearcoat_normal_texture) return d.clearcoat_normal_texture.texcoord;
+  return d.anisotropy_texture.texcoord;
+}
+
 }  // namespace
 
 Material::Material(const MaterialDescription& description, std::span<const Texture> textures, bool has_colors)
     : description_(description), textures_(textures), has_colors_(has_colors) {
   const auto& d = description_;
-  const bool bsdf_varies = has_colors || d.base_color_texture || d.metallic_roughness_texture ||
-                           d.specular_texture || d.specular_color_texture || d.transmission_texture;
-  is_constant_ = !bsdf_varies;
-  needs_attributes_ = bsdf_varies || d.normal_texture || d.emissive_texture;
+  const bool bsdf_varies = has_colors || has_bsdf_texture(d);
+  needs_attributes_ = bsdf_varies || has_normal_maps() || d.emissive_texture;
   is_emissive_ = d.unlit || !is_black(d.emissive);
+  tangent_texcoord_ = texcoord_of_tangents(d);
   absorption_ = absorption_of(d);
-  if (is_volume_boundary()) {
-    energy_front_ = &GlassEnergy::of(relative_index(d));
-    energy_back_ = &GlassEnergy::of(1 / relative_index(d));
-  }
+  if (d.transmission > 0) sides_ = make_sides(d);
+  // Under a normal map the coat's normal varies in the frame of the base.
+  is_constant_ = !bsdf_varies && !(has_coat() && has_normal_maps());
   if (is_constant_) {
-    constant_front_ = make_bsdf({}, true);
-    constant_back_ = make_bsdf({}, false);
+    constant_front_ = make_bsdf({}, {true});
+    constant_back_ = make_bsdf({}, {false});
   }
+}
+
+std::shared_ptr<const std::array<Material::Side, 2>> Material::make_sides(const MaterialDescription& d) {
+  auto sides = std::make_shared<std::array<Side, 2>>();
+  for (const bool front : {false, true}) {
+    Side& side = (*sides)[front];
+    const auto seen = [&](float ior) { return front || d.thickness <= 0 ? ior : 1 / ior; };
+    side.eta = seen(relative_index(d));
+    if (d.thickness <= 0) continue;
+    side.energy = &GlassEnergy::of(side.eta);
+    if (d.dispersion <= 0 || d.ior == 0) continue;
+    side.dispersion.emplace();
+    for (size_t c = 0; c < 3; ++c) {
+      side.dispersion->eta[c] = seen(dispersed_ior(d)[c]);
+      side.dispersion->energy[c] = &GlassEnergy::of(side.dispersion->eta[c]);
+    }
+  }
+  return sides;
 }
 
 Vec4f Material::read(const TextureUse& use, const SurfaceAttributes& attributes,
@@ -60,55 +98,132 @@ Vec4f Material::base_color(const SurfaceAttributes& attributes) const {
   return color;
 }
 
-Bsdf Material::bsdf(const SurfaceAttributes& attributes, bool front) const {
-  if (is_constant_) return front ? constant_front_ : constant_back_;
-  return make_bsdf(attributes, front);
+Bsdf Material::bsdf(const SurfaceAttributes& attributes, const Encounter& encounter) const {
+  if (is_constant_ && !encounter.channel) return encounter.front ? constant_front_ : constant_back_;
+  return make_bsdf(attributes, encounter);
 }
 
-Bsdf Material::make_bsdf(const SurfaceAttributes& attributes, bool front) const {
-  const auto& d = description_;
-  if (d.unlit) return Lambert{};
-  const Rgb color = rgb(base_color(attributes));
+Bsdf Material::make_bsdf(const SurfaceAttributes& attributes, const Encounter& encounter) const {
+  if (description_.unlit) return Lambert{};
+  const Base base = read_base(attributes);
+  // Sheen and coat lie on the outside of a volume.
+  if (encounter.front || !is_volume_boundary()) {
+    const Sheen sheen = read_sheen(attributes);
+    const Coat coat = read_coat(attributes, encounter);
+    if (sheen || coat) return Layered(mixture(base, encounter), sheen, coat);
+  }
+  if (base.metallic >= 1) return Glossy::metal(base.metal, base.ggx);
+  if (base.transmission >= 1 && base.metallic <= 0) return glass(base, encounter);
+  if (base.transmission > 0) return mixture(base, encounter);
+  const bool matte = base.dielectric.f90 <= 0 && !base.dielectric.film && is_black(base.body.transmitted);
+  if (matte && base.metallic <= 0) return Lambert{base.body.reflected};
+  return glossy(base, base.metallic, encounter);
+}
 
-  float metallic = d.metallic, roughness = d.roughness;
+Material::Base Material::read_base(const SurfaceAttributes& attributes) const {
+  const auto& d = description_;
+  Base base;
+  base.color = rgb(base_color(attributes));
+  base.metallic = d.metallic;
+  float roughness = d.roughness;
   if (d.metallic_roughness_texture) {
     const Vec4f texel = read(d.metallic_roughness_texture, attributes, TexelEncoding::linear);
     roughness *= texel.y;
-    metallic *= texel.z;
+    base.metallic *= texel.z;
   }
   const float alpha = square(std::clamp(roughness, 0.f, 1.f));
-  const Ggx ggx{alpha, alpha};
-  const Conductor metal{color, {1, 1, 1}, ggx};
-  if (metallic >= 1) return metal;
-
-  // KHR_materials_specular on top of KHR_materials_ior; an index of 0 asks for full reflectance.
-  const float f90 = d.specular * read(d.specular_texture, attributes, TexelEncoding::linear).w;
-  const Rgb specular_color =
-      d.specular_color * rgb(read(d.specular_color_texture, attributes, TexelEncoding::srgb));
-  Rgb f0;
-  for (int c = 0; c < 3; ++c)
-    f0[c] = (d.ior == 0 ? 1 : std::min(f0_from_ior(d.ior) * specular_color[c], 1.f)) * f90;
-  const float transmission =
-      d.transmission * read(d.transmission_texture, attributes, TexelEncoding::linear).x;
-
-  if (transmission <= 0 && metallic <= 0 && f90 <= 0) return Lambert{color};
-  const Plastic plastic{color, f0, {f90, f90, f90}, ggx};
-  if (transmission <= 0 && metallic <= 0) return plastic;
-
-  const bool thin = d.thickness <= 0;
-  const float ior = relative_index(d);
-  const Dielectric glass{
-      thin || front ? ior : 1 / ior, ggx, color, specular_color * f90, thin, front ? energy_front_ : energy_back_};
-  if (transmission >= 1 && metallic <= 0) return glass;
-  return Mixture{
-      metal, plastic, glass, metallic, (1 - metallic) * (1 - transmission), (1 - metallic) * transmission};
+  base.ggx = {alpha, alpha};
+  if (is_anisotropic()) {
+    const float strength = d.anisotropy * read(d.anisotropy_texture, attributes, TexelEncoding::linear).z;
+    if (strength > 0) base.ggx = {lerp(square(strength), alpha, 1.f), std::max(alpha, Ggx::smooth_limit)};
+  }
+  base.metal = {base.color, 1, read_film(attributes)};
+  base.body.reflected = base.color;
+  if (base.metallic < 1) read_dielectric(attributes, base);
+  return base;
 }
 
-Rgb Material::emission(const SurfaceAttributes& attributes, bool front) const {
-  if (!front && !description_.double_sided) return {0, 0, 0};
-  if (description_.unlit) return rgb(base_color(attributes));
-  if (!description_.emissive_texture) return description_.emissive;
-  return description_.emissive * rgb(read(description_.emissive_texture, attributes, TexelEncoding::srgb));
+void Material::read_dielectric(const SurfaceAttributes& attributes, Base& base) const {
+  const auto& d = description_;
+  // KHR_materials_specular on top of KHR_materials_ior; an index of 0 asks for full reflectance.
+  const float f90 = d.specular * read(d.specular_texture, attributes, TexelEncoding::linear).w;
+  const Rgb color = d.specular_color * rgb(read(d.specular_color_texture, attributes, TexelEncoding::srgb));
+  const float f0 = d.ior == 0 ? 1 : f0_from_ior(d.ior);
+  base.dielectric = {color, f90, base.metal.film};
+  for (int c = 0; c < 3; ++c) base.dielectric.f0[c] = std::min(f0 * color[c], 1.f) * f90;
+
+  base.transmission = d.transmission * read(d.transmission_texture, attributes, TexelEncoding::linear).x;
+  const float weight =
+      d.diffuse_transmission * read(d.diffuse_transmission_texture, attributes, TexelEncoding::linear).w;
+  if (weight <= 0) return;
+  base.body.reflected = base.color * (1 - weight);
+  base.body.transmitted = d.diffuse_transmission_color * weight *
+                          rgb(read(d.diffuse_transmission_color_texture, attributes, TexelEncoding::srgb));
+}
+
+ThinFilm Material::read_film(const SurfaceAttributes& attributes) const {
+  const auto& d = description_;
+  if (d.iridescence <= 0) return {};
+  const float strength = d.iridescence * read(d.iridescence_texture, attributes, TexelEncoding::linear).x;
+  const float blend = read(d.iridescence_thickness_texture, attributes, TexelEncoding::linear).y;
+  const float thickness = lerp(blend, d.iridescence_thickness_min, d.iridescence_thickness_max);
+  if (thickness <= 0) return {};
+  return {strength, d.iridescence_ior, thickness};
+}
+
+Sheen Material::read_sheen(const SurfaceAttributes& attributes) const {
+  const auto& d = description_;
+  if (is_black(d.sheen_color)) return {};
+  const Rgb color = d.sheen_color * rgb(read(d.sheen_color_texture, attributes, TexelEncoding::srgb));
+  return {color, d.sheen_roughness * read(d.sheen_roughness_texture, attributes, TexelEncoding::linear).w};
+}
+
+float Material::coat_weight(const SurfaceAttributes& attributes) const {
+  if (!has_coat()) return 0;
+  return description_.clearcoat * read(description_.clearcoat_texture, attributes, TexelEncoding::linear).x;
+}
+
+Coat Material::read_coat(const SurfaceAttributes& attributes, const Encounter& encounter) const {
+  const auto& d = description_;
+  const float weight = coat_weight(attributes);
+  if (weight <= 0) return {};
+  const float roughness =
+      d.clearcoat_roughness * read(d.clearcoat_roughness_texture, attributes, TexelEncoding::linear).y;
+  return {weight, square(roughness), encounter.coat_normal};
+}
+
+Glossy Material::glossy(const Base& base, float metallic, const Encounter& encounter) const {
+  if (metallic >= 1) return Glossy::metal(base.metal, base.ggx);
+  DiffuseBody body = base.body;
+  if (sides_ && is_volume_boundary()) body.eta = (*sides_)[encounter.front].eta;
+  const Glossy plastic = Glossy::plastic(base.dielectric, base.ggx, body);
+  return metallic > 0 ? Glossy::mix(plastic, Glossy::metal(base.metal, base.ggx), metallic) : plastic;
+}
+
+Dielectric Material::glass(const Base& base, const Encounter& encounter) const {
+  const Side& side = (*sides_)[encounter.front];
+  Dielectric result{side.eta,    base.ggx, base.color, base.dielectric, !is_volume_boundary(),
+                    side.energy, nullptr};
+  if (!side.dispersion) return result;
+  result.dispersion = &*side.dispersion;
+  return encounter.channel ? result.of_channel(*encounter.channel) : result;
+}
+
+Mixture Material::mixture(const Base& base, const Encounter& encounter) const {
+  const float clear = (1 - base.metallic) * base.transmission;
+  if (clear <= 0) return {glossy(base, base.metallic, encounter), {}, 0};
+  const float metallic = clear < 1 ? base.metallic / (1 - clear) : 0;
+  return {glossy(base, metallic, encounter), glass(base, encounter), clear};
+}
+
+Rgb Material::emission(const SurfaceAttributes& attributes, bool front, float cos_theta) const {
+  const auto& d = description_;
+  if (!front && !d.double_sided) return {0, 0, 0};
+  if (d.unlit) return rgb(base_color(attributes));
+  Rgb radiance = d.emissive;
+  if (d.emissive_texture) radiance *= rgb(read(d.emissive_texture, attributes, TexelEncoding::srgb));
+  if (has_coat()) radiance *= 1 - Coat{coat_weight(attributes)}.reflectance(std::abs(cos_theta));
+  return radiance;
 }
 
 float Material::coverage(const SurfaceAttributes& attributes) const {
@@ -118,11 +233,29 @@ float Material::coverage(const SurfaceAttributes& attributes) const {
   return alpha;
 }
 
+Vec3f Material::read_normal(const TextureUse& use, float scale, const SurfaceAttributes& attributes) const {
+  if (!use) return {0, 0, 1};
+  const Vec4f texel = read(use, attributes, TexelEncoding::linear);
+  return normalize(
+      Vec3f((2 * texel.x - 1) * scale, (2 * texel.y - 1) * scale, std::max(2 * texel.z - 1, 1e-3f)));
+}
+
 Vec3f Material::tangent_space_normal(const SurfaceAttributes& attributes) const {
-  const Vec4f texel = read(description_.normal_texture, attributes, TexelEncoding::linear);
-  const float scale = description_.normal_scale;
-  const Vec3f n((2 * texel.x - 1) * scale, (2 * texel.y - 1) * scale, std::max(2 * texel.z - 1, 1e-3f));
-  return normalize(n);
+  return read_normal(description_.normal_texture, description_.normal_scale, attributes);
+}
+
+Vec3f Material::tangent_space_coat_normal(const SurfaceAttributes& attributes) const {
+  return read_normal(description_.clearcoat_normal_texture, description_.clearcoat_normal_scale, attributes);
+}
+
+Vec2f Material::anisotropy_direction(const SurfaceAttributes& attributes) const {
+  const float c = std::cos(description_.anisotropy_rotation), s = std::sin(description_.anisotropy_rotation);
+  if (!description_.anisotropy_texture) return {c, s};
+  const Vec4f texel = read(description_.anisotropy_texture, attributes, TexelEncoding::linear);
+  const Vec2f d(2 * texel.x - 1, 2 * texel.y - 1);
+  const float length2 = d.x * d.x + d.y * d.y;
+  if (length2 < 1e-6f) return {c, s};
+  return Vec2f(c * d.x - s * d.y, s * d.x + c * d.y) * (1 / std::sqrt(length2));
 }
 
 }  // namespace vernier

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <span>
 
 #include "materials/bsdf.h"
@@ -14,48 +15,93 @@ struct SurfaceAttributes {
   Vec4f color{1, 1, 1, 1};
 };
 
+/// How light meets a surface, as far as its scattering depends on it.
+struct Encounter {
+  bool front = true;             ///< front faces look to the outside of a volume
+  Vec3f coat_normal{0, 0, 1};    ///< of a clear coat, in the frame that the BSDF is to be used in
+  std::optional<int> channel{};  ///< the one colour channel that the path still carries, if only one
+};
+
 /// A glTF material compiled to the least model that is exact for it, with its textures at hand. What it does
-/// not use is not read: ask needs_attributes() before interpolating them. Refers to the textures it was
-/// compiled with.
+/// not use is not read: ask needs_attributes() and needs_tangents() before interpolating them. Refers to the
+/// textures it was compiled with.
 class Material {
  public:
   /// `has_colors`: the mesh has vertex colours, which multiply the base colour.
   Material(const MaterialDescription& description, std::span<const Texture> textures, bool has_colors);
 
-  /// The scattering at a point met from the front or the back; front faces look to the outside of a volume.
-  Bsdf bsdf(const SurfaceAttributes& attributes, bool front) const;
+  /// The scattering at a point.
+  Bsdf bsdf(const SurfaceAttributes& attributes, const Encounter& encounter) const;
 
   /// Radiance emitted at a point on the side given; glTF emits from back faces of double-sided materials
-  /// only.
-  Rgb emission(const SurfaceAttributes& attributes, bool front) const;
+  /// only. A clear coat darkens it by what it reflects; cos_theta: between its normal and the viewer.
+  Rgb emission(const SurfaceAttributes& attributes, bool front, float cos_theta) const;
 
   /// Coverage in [0,1]: what part of light meets the surface at all (glTF alphaMode; 1 or 0 for MASK).
   float coverage(const SurfaceAttributes& attributes) const;
 
-  /// Shading normal in tangent space from the normal texture, unit, z > 0; only when has_normal_map().
+  /// Shading normal in tangent space from the normal texture, unit, z > 0; +z where there is none.
   Vec3f tangent_space_normal(const SurfaceAttributes& attributes) const;
+  /// The same for a clear coat, which does not follow the base's normal texture.
+  Vec3f tangent_space_coat_normal(const SurfaceAttributes& attributes) const;
+  /// Direction in tangent space, unit, in which highlights are stretched; only if is_anisotropic().
+  Vec2f anisotropy_direction(const SurfaceAttributes& attributes) const;
 
   bool needs_attributes() const { return needs_attributes_; }
-  bool has_normal_map() const { return bool(description_.normal_texture); }
-  /// Texture coordinate set that the normal map, and so the tangent frame, follows.
-  int normal_texcoord() const { return description_.normal_texture.texcoord; }
+  /// Something is told in tangent space: normals or the direction of anisotropy.
+  bool needs_tangents() const { return has_normal_maps() || is_anisotropic(); }
+  /// Texture coordinate set that the tangent space follows.
+  int tangent_texcoord() const { return tangent_texcoord_; }
+  bool has_normal_maps() const {
+    return description_.normal_texture || (has_coat() && description_.clearcoat_normal_texture);
+  }
+  bool is_anisotropic() const { return description_.anisotropy > 0; }
+  bool has_coat() const { return description_.clearcoat > 0; }
+
   bool is_emissive() const { return is_emissive_; }
   /// Emits, but is no light: seen by rays that happen to meet it (KHR_materials_unlit).
   bool is_unlit() const { return description_.unlit; }
   bool is_opaque() const { return description_.alpha_mode == AlphaMode::opaque; }
   bool double_sided() const { return description_.double_sided; }
   /// Light may pass through the surface.
-  bool transmits() const { return description_.transmission > 0; }
-  /// Encloses a volume: its surface bends light and the inside absorbs.
-  bool is_volume_boundary() const { return description_.thickness > 0 && description_.transmission > 0; }
+  bool transmits() const { return description_.transmission > 0 || description_.diffuse_transmission > 0; }
+  /// Encloses a volume: the inside absorbs, and its surface bends light that is not scattered.
+  bool is_volume_boundary() const { return description_.thickness > 0 && transmits(); }
   /// Absorption coefficient of that volume, per metre (KHR_materials_volume: -ln(colour) / distance).
   const Rgb& absorption() const { return absorption_; }
   const std::string& name() const { return description_.name; }
 
  private:
+  /// The base layer at a point, textures read.
+  struct Base {
+    Rgb color{0, 0, 0};
+    Ggx ggx;
+    Fresnel metal, dielectric;
+    DiffuseBody body;
+    float metallic = 0, transmission = 0;
+  };
+  /// Relative indices of a volume's boundary from one side.
+  struct Side {
+    float eta = 1;
+    const GlassEnergy* energy = nullptr;
+    std::optional<Dispersion> dispersion;
+  };
+
   Vec4f read(const TextureUse& use, const SurfaceAttributes& attributes, TexelEncoding encoding) const;
   Vec4f base_color(const SurfaceAttributes& attributes) const;
-  Bsdf make_bsdf(const SurfaceAttributes& attributes, bool front) const;
+  Vec3f read_normal(const TextureUse& use, float scale, const SurfaceAttributes& attributes) const;
+
+  Bsdf make_bsdf(const SurfaceAttributes& attributes, const Encounter& encounter) const;
+  Base read_base(const SurfaceAttributes& attributes) const;
+  void read_dielectric(const SurfaceAttributes& attributes, Base& base) const;
+  ThinFilm read_film(const SurfaceAttributes& attributes) const;
+  Sheen read_sheen(const SurfaceAttributes& attributes) const;
+  float coat_weight(const SurfaceAttributes& attributes) const;
+  Coat read_coat(const SurfaceAttributes& attributes, const Encounter& encounter) const;
+  Glossy glossy(const Base& base, float metallic, const Encounter& encounter) const;
+  Dielectric glass(const Base& base, const Encounter& encounter) const;
+  Mixture mixture(const Base& base, const Encounter& encounter) const;
+  static std::shared_ptr<const std::array<Side, 2>> make_sides(const MaterialDescription& description);
 
   MaterialDescription description_;
   std::span<const Texture> textures_;
@@ -63,9 +109,9 @@ class Material {
   bool needs_attributes_ = false;
   bool is_constant_ = false;  ///< nothing of the BSDF depends on the place
   bool is_emissive_ = false;
+  int tangent_texcoord_ = 0;
   Rgb absorption_{0, 0, 0};
-  const GlassEnergy* energy_front_ = nullptr;  ///< of a volume's boundary
-  const GlassEnergy* energy_back_ = nullptr;
+  std::shared_ptr<const std::array<Side, 2>> sides_;  ///< back, front; null: bends no light
   Bsdf constant_front_, constant_back_;
 };
 

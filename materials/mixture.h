@@ -1,52 +1,39 @@
 #pragma once
 
-#include "materials/conductor.h"
 #include "materials/dielectric.h"
-#include "materials/plastic.h"
+#include "materials/glossy.h"
 
 namespace vernier {
 
-/// glTF's whole base layer: metal, opaque non-metal and clear dielectric side by side, weights adding to 1. Appendix B
-/// of glTF 2.0 and KHR_materials_transmission mix linearly in metallic and transmission, so the sum is exact.
+/// glTF's whole base layer: what reflects and what is clear side by side. Appendix B of glTF 2.0 and
+/// KHR_materials_transmission mix linearly in metallic and transmission, so the sum is exact.
 struct Mixture {
-  Conductor metal;
-  Plastic plastic;
+  Glossy glossy;
   Dielectric glass;
-  float metal_weight = 0, plastic_weight = 1, glass_weight = 0;
+  float glass_weight = 0;  ///< the rest is glossy
 
   BsdfEval eval(const Vec3f& wo, const Vec3f& wi) const {
-    const Choice choice = choose(wo);
-    BsdfEval sum;
-    add(sum, metal, metal_weight, choice.metal, wo, wi);
-    add(sum, plastic, plastic_weight, choice.plastic, wo, wi);
-    add(sum, glass, glass_weight, choice.glass, wo, wi);
+    if (glass_weight <= 0) return glossy.eval(wo, wi);
+    const float prob = glass_prob(wo);
+    BsdfEval sum = glossy.eval(wo, wi);
+    const BsdfEval value = glass.eval(wo, wi);
+    sum.f_cos = sum.f_cos * (1 - glass_weight) + value.f_cos * glass_weight;
+    sum.pdf = sum.pdf * (1 - prob) + value.pdf * prob;
     return sum;
   }
 
   std::optional<BsdfSample> sample(const Vec3f& wo, float u, const Vec2f& v) const {
-    const Choice choice = choose(wo);
+    if (glass_weight <= 0) return glossy.sample(wo, u, v);
+    const float prob = glass_prob(wo);
     std::optional<BsdfSample> picked;
-    float prob, weight;
-    if (u < choice.metal) {
-      prob = choice.metal;
-      weight = metal_weight;
-      picked = metal.sample(wo, u / prob, v);
-    } else if (u < choice.metal + choice.plastic) {
-      prob = choice.plastic;
-      weight = plastic_weight;
-      picked = plastic.sample(wo, std::min((u - choice.metal) / prob, 0x1.fffffep-1f), v);
+    if (u < prob) {
+      picked = glass.sample(wo, u / prob, v);
+      if (picked) scale_delta(*picked, glass_weight, prob);
     } else {
-      prob = choice.glass;
-      weight = glass_weight;
-      if (prob <= 0) return std::nullopt;
-      picked = glass.sample(wo, std::min((u - choice.metal - choice.plastic) / prob, 0x1.fffffep-1f), v);
+      picked = glossy.sample(wo, std::min((u - prob) / (1 - prob), 0x1.fffffep-1f), v);
+      if (picked) scale_delta(*picked, 1 - glass_weight, 1 - prob);
     }
-    if (!picked) return std::nullopt;
-    if (picked->is_delta()) {
-      picked->weight *= weight / prob;
-      picked->pdf *= prob;
-      return picked;
-    }
+    if (!picked || picked->is_delta()) return picked;
     const BsdfEval value = eval(wo, picked->wi);
     if (!(value.pdf > 0)) return std::nullopt;
     picked->weight = value.f_cos / value.pdf;
@@ -55,37 +42,29 @@ struct Mixture {
   }
 
   Rgb albedo(const Vec3f& wo) const {
-    return metal.albedo(wo) * metal_weight + plastic.albedo(wo) * plastic_weight + glass.albedo(wo) * glass_weight;
+    if (glass_weight <= 0) return glossy.albedo(wo);
+    return glossy.albedo(wo) * (1 - glass_weight) + glass.albedo(wo) * glass_weight;
   }
 
   SpecularRays specular(const Vec3f& wo) const {
+    if (glass_weight <= 0) return glossy.specular(wo);
     SpecularRays rays = glass.specular(wo);
     rays.transmitted *= glass_weight;
-    rays.reflected = metal.specular(wo).reflected * metal_weight + plastic.specular(wo).reflected * plastic_weight +
-                     rays.reflected * glass_weight;
+    rays.reflected = glossy.specular(wo).reflected * (1 - glass_weight) + rays.reflected * glass_weight;
     return rays;
   }
 
  private:
-  struct Choice {
-    float metal, plastic, glass;
-  };
-
-  Choice choose(const Vec3f& wo) const {
-    const float m = metal_weight > 0 ? metal_weight * luminance(metal.albedo(wo)) : 0;
-    const float p = plastic_weight > 0 ? plastic_weight * luminance(plastic.albedo(wo)) : 0;
-    const float g = glass_weight > 0 ? glass_weight * luminance(glass.albedo(wo)) : 0;
-    const float sum = m + p + g;
-    if (!(sum > 0)) return {metal_weight, plastic_weight, glass_weight};
-    return {m / sum, p / sum, g / sum};
+  float glass_prob(const Vec3f& wo) const {
+    const float clear = glass_weight * luminance(glass.albedo(wo));
+    const float sum = clear + (1 - glass_weight) * luminance(glossy.albedo(wo));
+    return sum > 0 ? clear / sum : glass_weight;
   }
 
-  template <typename Model>
-  static void add(BsdfEval& sum, const Model& model, float weight, float prob, const Vec3f& wo, const Vec3f& wi) {
-    if (weight <= 0) return;
-    const BsdfEval value = model.eval(wo, wi);
-    sum.f_cos += value.f_cos * weight;
-    sum.pdf += value.pdf * prob;
+  static void scale_delta(BsdfSample& sample, float weight, float prob) {
+    if (!sample.is_delta()) return;
+    sample.weight *= weight / prob;
+    sample.pdf *= prob;
   }
 };
 

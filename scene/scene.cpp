@@ -4,6 +4,7 @@
 
 #include "core/base/names.h"
 #include "core/base/parallel.h"
+#include "scene/emission.h"
 #include "scene/lights/punctual.h"
 #include "scene/lights/triangle_light.h"
 
@@ -24,6 +25,13 @@ std::shared_ptr<const EnvironmentDescription> default_sky() {
   auto sky = std::make_shared<EnvironmentDescription>();
   sky->picture = std::move(picture);
   return sky;
+}
+
+/// The one colour channel that a path still carries, if only one.
+std::optional<int> only_channel(const Rgb& carried) {
+  for (int c = 0; c < 3; ++c)
+    if (carried[c] != 0 && carried[(c + 1) % 3] == 0 && carried[(c + 2) % 3] == 0) return c;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -122,21 +130,34 @@ std::optional<SurfacePoint> Scene::intersect_from_camera(Ray ray) const {
   return std::nullopt;
 }
 
-Shading Scene::shade(const SurfacePoint& point, const Vec3f& wo) const {
+Shading Scene::shade(const SurfacePoint& point, const Vec3f& wo, const Rgb& carried) const {
   const Material& material = this->material(point);
   const SurfaceAttributes attributes =
       material.needs_attributes() ? geometry_.attributes(point) : SurfaceAttributes{};
-  Vec3f normal = geometry_.shading_normal(point);
-  if (material.has_normal_map()) {
-    const auto [tangent, bitangent] = geometry_.tangent_frame(point, normal, material.normal_texcoord());
-    const Vec3f n = material.tangent_space_normal(attributes);
-    normal = normalize(tangent * n.x + bitangent * n.y + normal * n.z);
-  }
-  const Vec3f ng = point.front ? point.ng : -point.ng;
-  if (!point.front) normal = -normal;
+  const float side = point.front ? 1.f : -1.f;
+  const Vec3f ng = point.ng * side;
   // A normal turned away from the viewer has no meaning; the true one has.
-  if (dot(normal, wo) <= 1e-4f) normal = ng;
-  return {Frame::from_normal(normal), ng, wo, material.bsdf(attributes, point.front)};
+  const auto facing = [&](const Vec3f& n) { return dot(n, wo) > 1e-4f ? n : ng; };
+
+  const Vec3f smooth = geometry_.shading_normal(point);
+  Encounter encounter{point.front, {0, 0, 1}, only_channel(carried)};
+  if (!material.needs_tangents())
+    return {Frame::from_normal(facing(smooth * side)), ng, wo, material.bsdf(attributes, encounter)};
+
+  const auto [tangent, bitangent] = geometry_.tangent_frame(point, smooth, material.tangent_texcoord());
+  const auto to_world = [&, t = tangent, b = bitangent](const Vec3f& v) {
+    return t * v.x + b * v.y + smooth * v.z;
+  };
+  const Vec3f normal = facing(normalize(to_world(material.tangent_space_normal(attributes))) * side);
+  Frame frame = Frame::from_normal(normal);
+  if (material.is_anisotropic()) {
+    const Vec2f direction = material.anisotropy_direction(attributes);
+    frame = Frame::from_normal_tangent(normal, to_world({direction.x, direction.y, 0}));
+  }
+  if (material.has_coat())
+    encounter.coat_normal =
+        frame.to_local(facing(normalize(to_world(material.tangent_space_coat_normal(attributes))) * side));
+  return {frame, ng, wo, material.bsdf(attributes, encounter)};
 }
 
 LightReceiver Scene::receiver(const SurfacePoint& point) const {
@@ -163,10 +184,7 @@ LightEval Scene::emitted(const SurfacePoint* from, const Ray& ray, const Surface
     if (!material.is_emissive()) return {};
     const auto& of_triangle = triangle_lights_[hit->instance];
     index = of_triangle.empty() ? -1 : of_triangle[hit->primitive];
-    if (index < 0 || !from) {
-      const auto attributes = material.needs_attributes() ? geometry_.attributes(*hit) : SurfaceAttributes{};
-      return {material.emission(attributes, hit->front), 0};
-    }
+    if (index < 0 || !from) return {emission(geometry_, material, *hit, hit->front, -ray.direction), 0};
   } else {
     if (!environment_) return {};
     if (!from) return {environment_->radiance(ray.direction), 0};

@@ -36,8 +36,9 @@ class Scene {
   /// Whether anything stands between the ends of a segment.
   bool occluded(const Ray& segment) const { return accelerator_->occluded(segment); }
 
-  /// The scattering at a surface point toward the unit direction wo.
-  Shading shade(const SurfacePoint& point, const Vec3f& wo) const;
+  /// The scattering at a surface point toward the unit direction wo, for a path whose throughput is
+  /// `carried`: surfaces that split colours need not bother with those that it has lost.
+  Shading shade(const SurfacePoint& point, const Vec3f& wo, const Rgb& carried = {1, 1, 1}) const;
 
   /// Light shining on a point, the choice among lights included in the pdf (and, for delta lights, in the
   /// radiance). u picks the light, v the point on it.

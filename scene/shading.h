@@ -39,6 +39,9 @@ class Shading {
                          local->eta, local->is_delta(), local->is_transmitted()};
   }
 
+  /// Whether light from wi passes through the surface.
+  bool is_transmitted(const Vec3f& wi) const { return dot(wi, ng_) < 0; }
+
   Rgb albedo() const { return bsdf_.albedo(wo_); }
 
   /// Directions in world space.

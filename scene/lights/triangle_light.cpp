@@ -1,6 +1,7 @@
 #include "scene/lights/triangle_light.h"
 
 #include "core/sampling/warp.h"
+#include "scene/emission.h"
 
 namespace vernier {
 
@@ -20,10 +21,10 @@ TriangleLight::TriangleLight(const SceneGeometry& geometry, const Material& mate
   power_ = mean_power();
 }
 
-Rgb TriangleLight::emission(const Vec2f& barycentrics, bool front) const {
-  if (!material_->needs_attributes()) return material_->emission({}, front);
-  return material_->emission(
-      geometry_->attributes(geometry_->surface_point(instance_, primitive_, barycentrics)), front);
+Rgb TriangleLight::emission(const Vec2f& barycentrics, bool front, const Vec3f& wo) const {
+  if (!material_->needs_attributes() && !material_->has_coat()) return material_->emission({}, front, 1);
+  const SurfacePoint point = geometry_->surface_point(instance_, primitive_, barycentrics);
+  return vernier::emission(*geometry_, *material_, point, front, wo);
 }
 
 std::optional<LightSample> TriangleLight::sample(const SurfacePoint& from, const Vec2f& u) const {
@@ -35,7 +36,7 @@ std::optional<LightSample> TriangleLight::sample(const SurfacePoint& from, const
   if (!(distance2 > 0)) return std::nullopt;
   const Vec3f wi = to_light * (1 / std::sqrt(distance2));
   const float cosine = -dot(wi, normal_);
-  const Rgb radiance = emission(barycentrics, cosine > 0);
+  const Rgb radiance = emission(barycentrics, cosine > 0, -wi);
   if (cosine == 0 || is_black(radiance)) return std::nullopt;
   const float pdf = distance2 / (std::abs(cosine) * area_);
   return LightSample{wi, radiance, pdf, false, from.spawn_to(on, error_, normal_)};
@@ -44,7 +45,7 @@ std::optional<LightSample> TriangleLight::sample(const SurfacePoint& from, const
 LightEval TriangleLight::eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const {
   const float distance2 = length_squared(on->position - from.position);
   const float cosine = std::abs(dot(wi, on->ng));
-  const Rgb radiance = emission({on->u, on->v}, on->front);
+  const Rgb radiance = emission({on->u, on->v}, on->front, -wi);
   if (cosine == 0 || is_black(radiance)) return {radiance, 0};
   return {radiance, distance2 / (cosine * area_)};
 }
@@ -67,7 +68,7 @@ float TriangleLight::mean_power() const {
   for (int i = 0; i < steps; ++i)
     for (int j = 0; j < steps - i; ++j, ++count) {
       const Vec2f barycentrics((float(i) + 1 / 3.f) / steps, (float(j) + 1 / 3.f) / steps);
-      sum += emission(barycentrics, true) + emission(barycentrics, false);
+      for (const bool front : {true, false}) sum += emission(barycentrics, front, normal_);
       if (!material_->needs_attributes()) return pi * area_ * luminance(sum);
     }
   return pi * area_ * luminance(sum) / float(count);

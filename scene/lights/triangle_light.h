@@ -17,7 +17,7 @@ class TriangleLight : public Light {
   std::optional<LightBounds> bounds() const override;
 
  private:
-  Rgb emission(const Vec2f& barycentrics, bool front) const;
+  Rgb emission(const Vec2f& barycentrics, bool front, const Vec3f& wo) const;
   float mean_power() const;
 
   const SceneGeometry* geometry_;

@@ -26,41 +26,53 @@ class CaseList {
   std::vector<BsdfCase> cases;
 };
 
+Glossy conductor(const Rgb& f0, const Ggx& widths) { return Glossy::metal({f0, 1, {}}, widths); }
+
+Glossy plastic(const Rgb& diffuse, const Rgb& f0, float f90, const Ggx& widths) {
+  return Glossy::plastic({f0, f90, {}}, widths, {diffuse});
+}
+
 void add_conductors(CaseList& list) {
   for (const float r : roughnesses) {
-    list.add(fmt::format("white conductor, roughness {}", r), Conductor{white, white, ggx(r)}, ggx(r))
-        .lossless = true;
-    list.add(fmt::format("gold, roughness {}", r), Conductor{gold, white, ggx(r)}, ggx(r));
+    list.add(fmt::format("white conductor, roughness {}", r), conductor(white, ggx(r)), ggx(r)).lossless =
+        true;
+    list.add(fmt::format("gold, roughness {}", r), conductor(gold, ggx(r)), ggx(r));
   }
   for (const Ggx& widths : {Ggx{0.3f, 0.05f}, Ggx{0.0025f, 0.09f}, Ggx{1, 0.3f}})
-    list.add(fmt::format("white conductor, widths {} {}", widths.ax, widths.ay),
-             Conductor{white, white, widths}, widths)
+    list.add(fmt::format("white conductor, widths {} {}", widths.ax, widths.ay), conductor(white, widths),
+             widths)
         .excess = 0.08;
 }
 
 void add_plastics(CaseList& list) {
   const Rgb f0(0.04f, 0.04f, 0.04f);
   for (const float r : roughnesses) {
-    list.add(fmt::format("white plastic, roughness {}", r), Plastic{white, f0, white, ggx(r)}, ggx(r))
-        .lossless = true;
-    list.add(fmt::format("blue plastic, roughness {}", r), Plastic{blue, f0, white, ggx(r)}, ggx(r));
+    list.add(fmt::format("white plastic, roughness {}", r), plastic(white, f0, 1, ggx(r)), ggx(r)).lossless =
+        true;
+    list.add(fmt::format("blue plastic, roughness {}", r), plastic(blue, f0, 1, ggx(r)), ggx(r));
   }
-  list.add("plastic of infinite index", Plastic{white, white, white, ggx(0.3f)}, ggx(0.3f)).lossless = true;
-  list.add("plastic of half specular", Plastic{white, f0 * 0.5f, white * 0.5f, ggx(0.3f)}, ggx(0.3f))
-      .lossless = true;
+  list.add("plastic of infinite index", plastic(white, white, 1, ggx(0.3f)), ggx(0.3f)).lossless = true;
+  list.add("plastic of half specular", plastic(white, f0 * 0.5f, 0.5f, ggx(0.3f)), ggx(0.3f)).lossless = true;
 }
 
-Dielectric thick(float eta, const Ggx& widths, const Rgb& tint, const Rgb& reflect_scale) {
-  return {eta, widths, tint, reflect_scale, false, widths.is_smooth() ? nullptr : &GlassEnergy::of(eta)};
+/// Reflectance of an index, coloured at normal incidence as KHR_materials_specular does.
+Fresnel fresnel(float eta, const Rgb& color = white) {
+  Fresnel result;
+  for (int c = 0; c < 3; ++c) result.f0[c] = std::min(f0_from_ior(eta) * color[c], 1.f);
+  return result;
+}
+
+Dielectric thick(float eta, const Ggx& widths, const Rgb& tint, const Rgb& specular) {
+  return {eta, widths, tint, fresnel(eta, specular), false, &GlassEnergy::of(eta)};
 }
 
 BsdfCase& add_dielectric(CaseList& list, const std::string& name, float eta, const Ggx& widths,
-                         const Rgb& tint, const Rgb& reflect_scale) {
-  BsdfCase& added = list.add(name, thick(eta, widths, tint, reflect_scale),
-                             thick(1 / eta, widths, tint, reflect_scale), widths);
+                         const Rgb& tint, const Rgb& specular) {
+  BsdfCase& added =
+      list.add(name, thick(eta, widths, tint, specular), thick(1 / eta, widths, tint, specular), widths);
   added.eta = eta;
   added.transmits = true;
-  added.lossless = tint == white;
+  added.lossless = tint == white && specular == white;
   if (std::abs(eta - 1) < 0.02f) added.tolerance = 3e-3;
   added.excess = 1e-3;  // total internal reflection loses nothing, whatever the tint
   added.reciprocal = widths.is_smooth();
@@ -72,7 +84,7 @@ void add_dielectrics(CaseList& list) {
     for (const float eta : {1.5f, 1 / 1.5f})
       add_dielectric(list, fmt::format("glass, index {:.3f}, roughness {}", eta, r), eta, ggx(r), white,
                      white);
-    const Dielectric thin{1.5f, ggx(r), white, white, true};
+    const Dielectric thin{1.5f, ggx(r), white, fresnel(1.5f), true};
     BsdfCase& added = list.add(fmt::format("thin glass, roughness {}", r), thin, ggx(r));
     added.transmits = added.lossless = true;
     added.reciprocal = ggx(r).is_smooth();
@@ -84,11 +96,9 @@ void add_dielectrics(CaseList& list) {
   for (const float eta : {1.5f, 1 / 1.5f}) {
     add_dielectric(list, fmt::format("blue glass, index {:.3f}", eta), eta, ggx(0.3f), blue, white);
     add_dielectric(list, fmt::format("glass of bright specular, index {:.3f}", eta), eta, ggx(0.3f), white,
-                   {9, 3, 1})
-        .lossless = false;
+                   {9, 3, 1});
     add_dielectric(list, fmt::format("glass of coloured specular, index {:.3f}", eta), eta, ggx(1), white,
-                   blue)
-        .tolerance = 2e-3;
+                   blue);
   }
 }
 
@@ -99,10 +109,10 @@ void add_mixtures(CaseList& list) {
         if (thin && eta < 1) continue;
         const Rgb f0(0.04f, 0.04f, 0.04f);
         const auto make = [&](float index) {
-          const Dielectric glass =
-              thin ? Dielectric{index, ggx(r), white, white, true} : thick(index, ggx(r), white, white);
-          return Mixture{
-              Conductor{white, white, ggx(r)}, Plastic{white, f0, white, ggx(r)}, glass, 0.4f, 0.35f, 0.25f};
+          const Dielectric glass = thin ? Dielectric{index, ggx(r), white, fresnel(index), true}
+                                        : thick(index, ggx(r), white, white);
+          const Glossy glossy = Glossy::mix(plastic(white, f0, 1, ggx(r)), conductor(white, ggx(r)), 0.5f);
+          return Mixture{glossy, glass, 0.25f};
         };
         BsdfCase& added =
             list.add(fmt::format("{}mixture, index {:.3f}, roughness {}", thin ? "thin " : "", eta, r),
@@ -111,6 +121,105 @@ void add_mixtures(CaseList& list) {
         added.transmits = added.lossless = true;
         added.reciprocal = ggx(r).is_smooth();
       }
+}
+
+void add_bodies(CaseList& list) {
+  const Rgb f0(0.04f, 0.04f, 0.04f);
+  for (const float r : {0.f, 0.3f}) {
+    BsdfCase& thin = list.add(fmt::format("leaf, roughness {}", r),
+                              Glossy::plastic({f0, 1, {}}, ggx(r), {white * 0.3f, white * 0.7f, 1}), ggx(r));
+    thin.transmits = thin.lossless = true;
+  }
+  list.add("plastic of coloured specular", Glossy::plastic({blue, 1, {}}, ggx(0.3f), {white, gold * 0.f, 1}),
+           ggx(0.3f));
+  // Diffuse transmission beside clear glass: light is n^2 times as dense inside.
+  const auto make = [&](float eta) {
+    return Mixture{Glossy::plastic({f0, 1, {}}, ggx(0.3f), {white * 0.5f, white * 0.5f, eta}),
+                   thick(eta, ggx(0.3f), white, white), 0.4f};
+  };
+  for (const float eta : {1.5f, 1 / 1.5f}) {
+    BsdfCase& wax = list.add(fmt::format("wax, index {:.3f}", eta), make(eta), make(1 / eta), ggx(0.3f));
+    wax.eta = eta;
+    wax.transmits = wax.lossless = true;
+    wax.reciprocal = false;
+  }
+}
+
+void add_films(CaseList& list) {
+  const Rgb f0(0.04f, 0.04f, 0.04f);
+  const ThinFilm thin{1, 1.3f, 400}, dense{0.7f, 2.5f, 120};
+  list.add("gold under film", Glossy::metal({gold, 1, thin}, ggx(0.3f)), ggx(0.3f));
+  for (const float r : {0.f, 0.3f, 1.f})
+    list.add(fmt::format("white plastic under film, roughness {}", r),
+             Glossy::plastic({f0, 1, thin}, ggx(r), {white}), ggx(r));
+  list.add("white plastic under dense film", Glossy::plastic({f0, 1, dense}, ggx(0.3f), {white}), ggx(0.3f));
+  for (const float r : {0.f, 0.3f})
+    for (const float eta : {1.5f, 1 / 1.5f}) {
+      const auto make = [&](float index) {
+        return Dielectric{index, ggx(r), white, {f0, 1, thin}, false, &GlassEnergy::of(index)};
+      };
+      BsdfCase& glass = list.add(fmt::format("glass under film, index {:.3f}, roughness {}", eta, r),
+                                 make(eta), make(1 / eta), ggx(r));
+      glass.eta = eta;
+      glass.transmits = true;
+      glass.excess = 5e-3;  // compensated as if there were no film
+      glass.reciprocal = r == 0;
+    }
+}
+
+void add_dispersion(CaseList& list) {
+  static const auto dispersion_of = [](bool inverse) {
+    Dispersion result{{1.4f, 1.5f, 1.6f}, {}};
+    for (size_t c = 0; c < 3; ++c) {
+      if (inverse) result.eta[c] = 1 / result.eta[c];
+      result.energy[c] = &GlassEnergy::of(result.eta[c]);
+    }
+    return result;
+  };
+  static const Dispersion outside = dispersion_of(false), inside = dispersion_of(true);
+  for (const float r : {0.f, 0.3f})
+    for (const Dispersion* side : {&outside, &inside}) {
+      const auto make = [&](const Dispersion* of) {
+        return Dielectric{of->eta[1], ggx(r), white, fresnel(1.5f), false, of->energy[1], of};
+      };
+      BsdfCase& added = list.add(
+          fmt::format("dispersing glass from {}, roughness {}", side == &outside ? "outside" : "inside", r),
+          make(side), make(side == &outside ? &inside : &outside), ggx(r));
+      added.eta = side->eta[0];
+      added.spread = 0.3;
+      added.transmits = added.lossless = true;
+      added.tolerance = 2e-3;
+      added.reciprocal = r == 0;
+    }
+}
+
+void add_layers(CaseList& list) {
+  const Rgb f0(0.04f, 0.04f, 0.04f);
+  const auto base = [&](float r, const Rgb& color) { return Mixture{plastic(color, f0, 1, ggx(r)), {}, 0}; };
+  for (const float coat : {0.f, 0.3f, 1.f}) {
+    const float narrowest = coat > 0 ? std::min(coat, 0.3f) : 0.3f;
+    BsdfCase& varnished = list.add(fmt::format("coat of roughness {} on white plastic", coat),
+                                   Layered(base(0.3f, white), {}, {1, coat * coat}), ggx(narrowest));
+    varnished.lossless = true;
+    varnished.reciprocal = false;
+    const Mixture metal{conductor(gold, ggx(0.3f)), {}, 0};
+    list.add(fmt::format("tilted coat of roughness {} on gold", coat),
+             Layered(metal, {}, {0.6f, coat * coat, normalize(Vec3f(0.3f, -0.4f, 1))}), ggx(narrowest))
+        .reciprocal = false;
+  }
+  for (const float r : {0.05f, 0.3f, 1.f}) {
+    list.add(fmt::format("white sheen of roughness {} on white plastic", r),
+             Layered(base(0.3f, white), {white, r}, {}), ggx(0.3f));
+    list.add(fmt::format("coat on blue sheen of roughness {} on gold", r),
+             Layered(Mixture{conductor(gold, ggx(1)), {}, 0}, {blue, r}, {0.7f, 0.04f}), ggx(0.2f))
+        .reciprocal = false;
+  }
+  const Dielectric thin{1.5f, ggx(0.3f), white, fresnel(1.5f), true};
+  BsdfCase& window =
+      list.add("coat and sheen on thin glass",
+               Layered({plastic(white, f0, 1, ggx(0.3f)), thin, 0.6f}, {gold, 0.5f}, {1, 0.01f}), ggx(0.1f));
+  window.transmits = true;
+  window.reciprocal = false;
 }
 
 }  // namespace
@@ -123,6 +232,10 @@ std::vector<BsdfCase> bsdf_cases() {
   add_plastics(list);
   add_dielectrics(list);
   add_mixtures(list);
+  add_bodies(list);
+  add_films(list);
+  add_dispersion(list);
+  add_layers(list);
   return list.cases;
 }
 

@@ -16,6 +16,8 @@ struct BsdfCase {
   Bsdf reverse;      ///< the same surface seen from the other side; equal to `bsdf` when nothing passes
   double width = 1;  ///< of the narrowest lobe that eval() knows
   double eta = 1;    ///< index of the far side over the near side; 1 when nothing is bent
+  double spread =
+      0;  ///< of eta over the colours; the first channel, of which energy is measured, has eta itself
   bool transmits = false;
   bool lossless = false;  ///< scatters all the light it receives, to within `tolerance`
   double tolerance = 1e-3;

@@ -1,0 +1,126 @@
+#pragma once
+
+#include "core/sampling/warp.h"
+#include "materials/bsdf_sample.h"
+#include "materials/fresnel.h"
+#include "materials/ggx.h"
+#include "materials/ggx_energy.h"
+
+namespace vernier {
+
+/// What lies under a clear surface and scatters diffusely.
+struct DiffuseBody {
+  Rgb reflected{0, 0, 0};
+  Rgb transmitted{0, 0, 0};  ///< to the other side (glTF KHR_materials_diffuse_transmission)
+  float eta = 1;  ///< index of the other side over that of the side of wo, where light is bent there too
+};
+
+/// GGX facets with a diffuse body under them: glTF's metal, its non-metal, and any mixture of both, which all
+/// share one lobe of facets because Schlick's reflectance is linear in its parameters.
+///
+/// A metal's facets give back what they block of each other as a diffuse-like lobe, so that a white metal
+/// reflects everything (Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks", SIGGRAPH
+/// course). A non-metal's body receives what the surface does not reflect on the way in and out, (1 - E(wo))
+/// (1 - E(wi)) normalised, which is reciprocal and loses nothing when the body is white; glTF 2.0 Appendix
+/// B's own example, 1 - F(h.v), is neither (Ashikhmin and Shirley 2000; Kelemen and Szirmay-Kalos 2001). E is
+/// that of the colour channel that reflects most, so that a coloured surface does not tint the body with its
+/// complement (KHR_materials_specular).
+class Glossy {
+ public:
+  static Glossy metal(const Fresnel& fresnel, const Ggx& ggx);
+  static Glossy plastic(const Fresnel& fresnel, const Ggx& ggx, const DiffuseBody& body);
+  /// `metallic` parts of one to the rest of the other, of the same width and film.
+  static Glossy mix(const Glossy& plastic, const Glossy& metal, float metallic);
+
+  BsdfEval eval(const Vec3f& wo, const Vec3f& wi) const {
+    if (wi.z < 0 && is_black(body_.transmitted)) return {};
+    return eval(wo, wi, seen_from(wo));
+  }
+
+  std::optional<BsdfSample> sample(const Vec3f& wo, float u, const Vec2f& v) const {
+    const View view = seen_from(wo);
+    Vec3f wi;
+    Lobe lobe = Lobe::diffuse;
+    if (u < view.facet_prob) {
+      if (ggx_.is_smooth())
+        return BsdfSample{reflect(wo), view.facets / view.facet_prob, view.facet_prob, Lobe::delta, 1};
+      const Vec3f m = ggx_.sample_visible(wo, v);
+      wi = 2 * dot(wo, m) * m - wo;
+      if (wi.z <= 0) return std::nullopt;
+      lobe = Lobe::glossy;
+    } else {
+      wi = sample_cosine_hemisphere(v);
+      if (u >= view.facet_prob + view.reflect_prob) wi.z = -wi.z;
+    }
+    const BsdfEval value = eval(wo, wi, view);
+    if (!(value.pdf > 0)) return std::nullopt;
+    return BsdfSample{wi, value.f_cos / value.pdf, value.pdf, lobe, wi.z < 0 ? body_.eta : 1};
+  }
+
+  Rgb albedo(const Vec3f& wo) const {
+    const GgxAlbedo ggx = ggx_toward(wo);
+    return fresnel_.albedo(ggx, wo.z) + multiple_ * ggx.missing +
+           (body_.reflected + body_.transmitted) * (1 - bound_.albedo(ggx));
+  }
+
+  SpecularRays specular(const Vec3f& wo) const {
+    return {fresnel_(wo.z), {0, 0, 0}, {0, 0, -1}, ggx_.mean_width()};
+  }
+
+ private:
+  Glossy(const Fresnel& fresnel, const Ggx& ggx) : fresnel_(fresnel), ggx_(ggx) {}
+
+  /// All that depends on wo alone, with the choice among the lobes.
+  struct View {
+    Rgb facets;     ///< fraction of light they reflect
+    float enters;   ///< fraction that gets to the body
+    float missing;  ///< fraction that facets block
+    float facet_prob, reflect_prob;
+  };
+
+  GgxAlbedo ggx_toward(const Vec3f& w) const {
+    return ggx_.is_smooth() ? GgxAlbedo{0, schlick_weight(w.z)} : ggx_albedo(w.z, ggx_.mean_width());
+  }
+
+  View seen_from(const Vec3f& wo) const {
+    const GgxAlbedo ggx = ggx_toward(wo);
+    View view{fresnel_.albedo(ggx, wo.z), 1 - bound_.albedo(ggx), ggx.missing, 1, 0};
+    const float facets = luminance(view.facets);
+    const float reflected = luminance(body_.reflected) * view.enters + luminance(multiple_) * ggx.missing;
+    const float sum = facets + reflected + luminance(body_.transmitted) * view.enters;
+    if (sum > 0) {
+      view.facet_prob = facets / sum;
+      view.reflect_prob = reflected / sum;
+    }
+    return view;
+  }
+
+  BsdfEval eval(const Vec3f& wo, const Vec3f& wi, const View& view) const {
+    const GgxAlbedo ggx = ggx_toward({wi.x, wi.y, std::abs(wi.z)});
+    const float cosine = cosine_hemisphere_pdf(std::abs(wi.z));
+    const float body = view.enters * (1 - bound_.albedo(ggx)) * body_scale_ * cosine;
+    if (wi.z < 0) {
+      const float prob = std::max(0.f, 1 - view.facet_prob - view.reflect_prob);
+      return {body_.transmitted * (body / square(body_.eta)), prob * cosine};
+    }
+    const float multiple = view.missing * ggx.missing * multiple_scale_ * cosine;
+    BsdfEval value{body_.reflected * body + multiple_ * multiple, view.reflect_prob * cosine};
+    if (ggx_.is_smooth()) return value;
+    const Vec3f m = normalize(wo + wi);
+    const float lambda_o = ggx_.lambda(wo);
+    const float d = ggx_.d(m) / (4 * wo.z);
+    value.f_cos += fresnel_(dot(wo, m)) * (d / (1 + lambda_o + ggx_.lambda(wi)));
+    value.pdf += view.facet_prob * d / (1 + lambda_o);
+    return value;
+  }
+
+  Fresnel fresnel_;
+  Ggx ggx_;
+  DiffuseBody body_;
+  SchlickCurve bound_;        ///< of what the surface over the body reflects
+  float body_scale_ = 0;      ///< 1 / (1 - its mean)
+  Rgb multiple_{0, 0, 0};     ///< colour of light that met more than one facet
+  float multiple_scale_ = 0;  ///< 1 / mean of what facets block
+};
+
+}  // namespace vernier

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "materials/material.h"
+#include "scene/geometry.h"
+
+namespace vernier {
+
+/// Radiance that a surface emits at `point` toward the unit direction wo, which leaves from the side given.
+inline Rgb emission(const SceneGeometry& geometry, const Material& material, const SurfacePoint& point,
+                    bool front, const Vec3f& wo) {
+  const SurfaceAttributes attributes =
+      material.needs_attributes() ? geometry.attributes(point) : SurfaceAttributes{};
+  const float cosine = material.has_coat() ? dot(geometry.shading_normal(point), wo) : 1;
+  return material.emission(attributes, front, cosine);
+}
+
+}  // namespace vernier
