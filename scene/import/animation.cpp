@@ -68,6 +68,14 @@ class Track {
     return rotation ? spherical(key(i), key(i + 1), t) : linear(key(i), key(i + 1), t);
   }
 
+  /// at(), which must be finite.
+  std::vector<double> finite_at(double time, bool rotation) const {
+    std::vector<double> value = at(time, rotation);
+    for (const double v : value)
+      if (!std::isfinite(v)) document_.fail(place_ + "/output", "the value is not finite");
+    return value;
+  }
+
   void expect_width(size_t width) const {
     if (width_ != width)
       document_.fail(place_ + "/output", fmt::format("expected {} values a key, found {}", width, width_));
@@ -131,7 +139,7 @@ void apply_animation(const Document& document, const std::string& wanted, double
     const Track track(document, animation.samplers[size_t(channel.sampler)],
                       fmt::format("/animations/{}/samplers/{}", index, channel.sampler));
     if (!weights) track.expect_width(rotation ? 4 : 3);
-    const std::vector<double> value = track.at(time, rotation);
+    const std::vector<double> value = track.finite_at(time, rotation);
     if (weights) pose.weights = value;
     if (path == "translation") pose.translation = {value[0], value[1], value[2]};
     if (path == "scale") pose.scale = {value[0], value[1], value[2]};

@@ -53,9 +53,15 @@ json parse_json(std::span<const uint8_t> text, const std::string& file) {
   }
 }
 
-void check_version(const json& asset, const std::string& file) {
-  const std::string version = asset["version"], least = asset.value("minVersion", "2.0");
-  if (!version.starts_with("2.") || least != "2.0")
+/// Version 1.0 is another format altogether, which is said before the schema finds everything in it wrong; so
+/// nothing is known of the types here.
+void check_version(const json& root, const std::string& file) {
+  const auto text_at = [&](const char* pointer, const char* otherwise) {
+    const json::json_pointer place(pointer);
+    return root.contains(place) && root[place].is_string() ? root[place].get<std::string>() : otherwise;
+  };
+  const std::string version = text_at("/asset/version", "2.0");
+  if (!version.starts_with("2.") || text_at("/asset/minVersion", "2.0") != "2.0")
     throw Error(ErrorKind::input, file, "/asset/version",
                 fmt::format("glTF {} cannot be read, only 2.0; convert the file to glTF 2.0", version));
 }
@@ -73,10 +79,7 @@ Document::Document(const std::string& path) : files_(path) {
   fingerprints_.push_back(fingerprint(file.span()));
   const Container container = split_container(file.span(), path);
   json root = parse_json(container.json, path);
-  // Version 1.0 is another format altogether: say so before anything else is found wrong.
-  if (root.is_object() && root.contains("asset") && root["asset"].is_object() &&
-      root["asset"].contains("version") && root["asset"]["version"].is_string())
-    check_version(root["asset"], path);
+  check_version(root, path);
   check_against_schema(root, gltf_schema(), path);
   read_buffers(root, container.binary);
   if (!container.binary.empty()) storage_.push_back(std::move(file));

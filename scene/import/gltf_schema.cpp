@@ -7,15 +7,15 @@ namespace vernier {
 namespace {
 
 using Kind = ValueRule::Kind;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 // 2^53 and 2^31 - 1: sizes that survive a double, and those that tinygltf keeps in an int.
 constexpr double max_size = 9007199254740992.0, max_int = 2147483647.0;
+constexpr double max_float = std::numeric_limits<float>::max();
 
 ValueRule boolean() { return {.kind = Kind::boolean}; }
 ValueRule text(std::vector<std::string> names = {}) {
   return {.kind = Kind::text, .names = std::move(names)};
 }
-ValueRule number(double lower = -infinity, double upper = infinity) {
+ValueRule number(double lower = -max_float, double upper = max_float) {
   return {.kind = Kind::number, .lower = lower, .upper = upper};
 }
 ValueRule integer(double lower, double upper) {

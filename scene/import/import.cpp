@@ -83,8 +83,9 @@ SceneDescription import_scene(const std::string& path, const ImportOptions& opti
   scene.features = report_features(document);
   add_feature_notices(scene);
 
-  std::vector<NodePose> poses = rest_pose(document);
-  if (options.time) apply_animation(document, options.animation, *options.time, poses);
+  std::vector<NodePose> poses = rest_pose(document, scene.notices);
+  if (options.time || !options.animation.empty())
+    apply_animation(document, options.animation, options.time.value_or(0), poses);
   const NodePlaces places = place_nodes(document, poses);
   add_cameras_and_lights(document, places, scene);
 

@@ -10,8 +10,10 @@ namespace vernier {
 struct ImportOptions {
   bool strict = false;  ///< anything not honoured exactly is an error
   std::string variant;  ///< of KHR_materials_variants, by name; empty: the materials the file has without
-  std::optional<double> time;  ///< seconds at which an animation poses the scene; none: at rest
-  std::string animation;       ///< name or index of that animation; empty: the first
+  /// Seconds at which an animation poses the scene. None: the scene is at rest, unless `animation` is named,
+  /// which then poses it at 0.
+  std::optional<double> time;
+  std::string animation;  ///< name or index; empty: the first
 };
 
 /// Reads a .gltf or .glb file with all it refers to. Throws Error(input) with the file and JSON pointer, and

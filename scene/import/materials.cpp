@@ -83,7 +83,7 @@ class MaterialReader {
     const float strength = extension("KHR_materials_emissive_strength").number("emissiveStrength", 1);
     const auto& factor = source_.emissiveFactor;
     for (int i = 0; i < 3; ++i)
-      result_.emissive[i] = not_negative(float(factor[size_t(i)]), "emissiveFactor") * strength;
+      result_.emissive[i] = not_negative(float(factor[size_t(i)]) * strength, "emissiveFactor");
     result_.emissive_texture = use_of(source_.emissiveTexture);
   }
 
@@ -189,8 +189,9 @@ class MaterialReader {
     return std::clamp(value, 0.f, 1.f);
   }
   float not_negative(float value, const char* property) {
-    if (!(value >= 0)) clamped(property);
-    return std::max(value, 0.f);
+    constexpr float largest = std::numeric_limits<float>::max();
+    if (!(value >= 0 && value <= largest)) clamped(property);
+    return std::clamp(value, 0.f, largest);
   }
   Rgb unit(const Rgb& c, const char* property) {
     return {unit(c.x, property), unit(c.y, property), unit(c.z, property)};

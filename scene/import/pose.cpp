@@ -1,5 +1,9 @@
 #include "scene/import/pose.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 namespace vernier {
 
 Imath::M44d NodePose::to_parent() const {
@@ -12,7 +16,8 @@ Imath::M44d NodePose::to_parent() const {
   return m;
 }
 
-std::vector<NodePose> rest_pose(const Document& document) {
+std::vector<NodePose> rest_pose(const Document& document, std::vector<Notice>& notices) {
+  size_t scaled = 0;
   std::vector<NodePose> poses;
   for (const auto& node : document.model().nodes) {
     NodePose& pose = poses.emplace_back();
@@ -22,13 +27,20 @@ std::vector<NodePose> rest_pose(const Document& document) {
       // Columns in the file are rows here.
       for (int i = 0; i < 16; ++i) (*pose.matrix)[i / 4][i % 4] = node.matrix[size_t(i)];
     }
-    if (r.size() == 4) pose.rotation = Imath::Quatd(r[3], r[0], r[1], r[2]).normalized();
+    if (r.size() == 4) {
+      const Imath::Quatd rotation(r[3], r[0], r[1], r[2]);
+      if (std::abs(rotation.length() - 1) > 0.01) ++scaled;
+      pose.rotation = rotation.normalized();
+    }
     for (int i = 0; i < 3; ++i) {
       if (node.translation.size() == 3) pose.translation[i] = node.translation[size_t(i)];
       if (node.scale.size() == 3) pose.scale[i] = node.scale[size_t(i)];
     }
     pose.weights = node.weights;
   }
+  if (scaled)
+    notices.push_back({Notice::Severity::warning, "/nodes",
+                       fmt::format("{} rotations were not of unit length and were scaled", scaled)});
   return poses;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/error.h"
 #include "scene/import/document.h"
 
 namespace vernier {
@@ -22,8 +23,9 @@ struct NodePose {
   Imath::M44d to_parent() const;
 };
 
-/// Poses of all nodes as the file gives them.
-std::vector<NodePose> rest_pose(const Document& document);
+/// Poses of all nodes as the file gives them. Rotations that are not of unit length are scaled, which is
+/// noticed.
+std::vector<NodePose> rest_pose(const Document& document, std::vector<Notice>& notices);
 
 /// Sets what the animation animates to its values at `time` seconds; before its first key and after its last
 /// those hold. `animation` is a name or an index, empty for the first. Throws Error(usage) when there is no

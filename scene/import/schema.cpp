@@ -15,7 +15,8 @@ using nlohmann::json;
 using Kind = ValueRule::Kind;
 
 std::string describe(const json& value) {
-  if (value.is_structured()) return value.is_array() ? fmt::format("{} items", value.size()) : "an object";
+  if (value.is_structured())
+    return value.is_array() ? fmt::format("an array of {}", value.size()) : "an object";
   std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
   if (text.size() > 60) text = text.substr(0, 57) + "...";
   return text;
@@ -129,7 +130,9 @@ class Checker {
   }
 
   static std::string range_text(const ValueRule& rule) {
-    const bool below = std::isfinite(rule.lower), above = std::isfinite(rule.upper);
+    // Numbers that merely have to fit single precision go without saying.
+    constexpr double largest = std::numeric_limits<float>::max();
+    const bool below = rule.lower > -largest, above = rule.upper < largest;
     if (below && above) return fmt::format(" from {} to {}", rule.lower, rule.upper);
     if (below) return fmt::format(" of at least {}", rule.lower);
     return above ? fmt::format(" of at most {}", rule.upper) : "";

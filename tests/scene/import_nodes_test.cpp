@@ -75,6 +75,7 @@ TEST(ImportNodes, NormalisesRotations) {
   GltfFile file = mesh_only();
   file.add_root({{"mesh", 0}, {"rotation", {0, 0, 5, 5}}});
   expect_near(file.import().instances.at(0).to_world.x, {0, 1, 0});
+  EXPECT_TRUE(has_notice(file.import(), "1 rotations were not of unit length"));
 }
 
 TEST(ImportNodes, ShowsTheDefaultSceneOnly) {
@@ -116,8 +117,11 @@ TEST(ImportNodes, SurvivesLongChains) {
 
 TEST(ImportNodes, RejectsTransformsThatDoNotFit) {
   GltfFile file = mesh_only();
-  file.add_root({{"mesh", 0}, {"scale", {1e200, 1, 1}}});
+  const int leaf = file.add("nodes", {{"mesh", 0}, {"scale", {1e30, 1, 1}}});
+  file.add_root({{"children", {leaf}}, {"scale", {1e30, 1, 1}}});
   EXPECT_THAT(import_error(file), HasSubstr("/nodes/0: the transform is too large"));
+  file.json["nodes"][0]["scale"] = {1e200, 1, 1};
+  EXPECT_THAT(import_error(file), HasSubstr("/nodes/0/scale/0: expected a number"));
   file.json["nodes"][0] = {{"mesh", 0}, {"matrix", {1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}};
   EXPECT_THAT(import_error(file), HasSubstr("/nodes/0: the transform is not affine"));
 }

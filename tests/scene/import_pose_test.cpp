@@ -82,6 +82,8 @@ TEST(ImportPose, ChoosesAnimationsByNameOrIndex) {
   options.animation = "jump";
   expect_near(file.import(options).instances.at(0).to_world.x, {1, 0, 0});
   expect_near(file.import(options).instances.at(0).to_world.y, {0, 0, 0});
+  options.time.reset();
+  expect_near(file.import(options).instances.at(0).to_world.y, {0, 0, 0});
   options.animation = "0";
   expect_near(file.import(options).instances.at(0).to_world.origin, {1, 0, 0});
   options.animation = "run";
@@ -97,6 +99,8 @@ TEST(ImportPose, RejectsBadTracks) {
               HasSubstr("/animations/0/samplers/0/input: time 1 does not increase"));
   EXPECT_THAT(import_error(animated("translation", {0, 1}, {0, 0, 0}, "VEC3", "LINEAR"), options),
               HasSubstr("/animations/0/samplers/0/output"));
+  EXPECT_THAT(import_error(animated("scale", {0}, {1, std::nanf(""), 1}, "VEC3", "LINEAR"), options),
+              HasSubstr("/animations/0/samplers/0/output: the value is not finite"));
   EXPECT_THAT(import_error(animated("rotation", {0}, {0, 0, 0}, "VEC3", "LINEAR"), options),
               HasSubstr("expected 4 values a key, found 3"));
   GltfFile file = animated("translation", {0}, {0, 0, 0}, "VEC3", "LINEAR");

@@ -42,7 +42,7 @@ TEST(ImportSchema, NamesWrongTypesByPointer) {
 
 TEST(ImportSchema, ChecksLengthsOfArrays) {
   EXPECT_THAT(error_with("/nodes/0/matrix", json(std::vector<double>(17, 0.0))),
-              HasSubstr("/nodes/0/matrix: expected 16 items, found 17 items"));
+              HasSubstr("/nodes/0/matrix: expected 16 items, found an array of 17"));
   EXPECT_THAT(error_with("/nodes/0/rotation", {0, 0, 1}), HasSubstr("/nodes/0/rotation: expected 4 items"));
   EXPECT_THAT(error_with("/nodes/0/scale", {1, "a", 1}),
               HasSubstr("/nodes/0/scale/1: expected a number, found \"a\""));
