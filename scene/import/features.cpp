@@ -121,4 +121,22 @@ std::vector<FeatureUse> report_features(const Document& document) {
   return features;
 }
 
+std::string describe(const FeatureUse& feature) {
+  const char* how = feature.status == Status::ignored        ? "ignored"
+                    : feature.status == Status::approximated ? "approximated"
+                                                             : "exact";
+  return fmt::format("{} is {}: {}", feature.name, how, feature.note);
+}
+
+std::vector<Notice> feature_notices(const std::vector<FeatureUse>& features) {
+  std::vector<Notice> notices;
+  for (const auto& feature : features) {
+    if (feature.status == Status::exact) continue;
+    const bool is_core = std::any_of(std::begin(core_features), std::end(core_features),
+                                     [&](const CoreEntry& entry) { return entry.name == feature.name; });
+    notices.push_back({is_core ? Notice::Severity::info : Notice::Severity::warning, "", describe(feature)});
+  }
+  return notices;
+}
+
 }  // namespace vernier

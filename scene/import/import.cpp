@@ -59,14 +59,12 @@ void add_textures(const Document& document, SceneDescription& scene, std::vector
   }
 }
 
-void add_feature_notices(SceneDescription& scene) {
+/// Throws Error(input) about the first thing that is not rendered exactly as the file says.
+void check_strictly(const Document& document, const SceneDescription& scene) {
   for (const auto& feature : scene.features)
-    if (feature.status != FeatureUse::Status::exact)
-      scene.notices.push_back(
-          {Notice::Severity::warning, "",
-           fmt::format("{} is {}: {}", feature.name,
-                       feature.status == FeatureUse::Status::ignored ? "ignored" : "approximated",
-                       feature.note)});
+    if (feature.status != FeatureUse::Status::exact) document.fail("", "strict: " + describe(feature));
+  for (const auto& notice : scene.notices)
+    if (notice.severity == Notice::Severity::warning) document.fail(notice.place, "strict: " + notice.text);
 }
 
 std::string combined_fingerprint(const std::vector<std::string>& parts) {
@@ -81,7 +79,7 @@ SceneDescription import_scene(const std::string& path, const ImportOptions& opti
   SceneDescription scene;
   scene.source = path;
   scene.features = report_features(document);
-  add_feature_notices(scene);
+  scene.notices = feature_notices(scene.features);
 
   std::vector<NodePose> poses = rest_pose(document, scene.notices);
   if (options.time || !options.animation.empty())
@@ -108,9 +106,7 @@ SceneDescription import_scene(const std::string& path, const ImportOptions& opti
   add_textures(document, scene, fingerprints);
   scene.hash = combined_fingerprint(fingerprints);
 
-  if (options.strict)
-    for (const auto& notice : scene.notices)
-      if (notice.severity == Notice::Severity::warning) document.fail(notice.place, "strict: " + notice.text);
+  if (options.strict) check_strictly(document, scene);
   return scene;
 }
 

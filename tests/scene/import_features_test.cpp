@@ -52,6 +52,11 @@ TEST(ImportFeatures, SaysWhyOcclusionIsIgnored) {
   const SceneDescription scene = file.import();
   ASSERT_TRUE(find(scene, "material.occlusionTexture"));
   EXPECT_EQ(find(scene, "material.occlusionTexture")->status, Status::ignored);
+  ASSERT_EQ(scene.notices.size(), 1u);
+  EXPECT_EQ(scene.notices[0].severity, Notice::Severity::info);
+  ImportOptions strict;
+  strict.strict = true;
+  EXPECT_THAT(import_error(file, strict), HasSubstr("strict: material.occlusionTexture is ignored"));
 }
 
 /// Every glTF model of Debian's assimp-testmodels, broken ones too.
