@@ -60,7 +60,7 @@ std::string describe_extras(const CLI::App& app, const std::vector<std::string>&
   const CLI::App& command = innermost(app);
   std::string prefix = command.get_name();
   for (const CLI::App* up = command.get_parent(); up; up = up->get_parent())
-    prefix = up->get_name() + " " + prefix;
+    prefix.insert(0, up->get_name() + " ");
   for (const auto& word : extras) {
     if (word.size() < 2 || word[0] != '-') continue;
     const std::string flag = word.substr(0, word.find('='));

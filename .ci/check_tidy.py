@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""Runs clang-tidy with the checks of .clang-tidy over every source file, on all processors.
+
+What passed is remembered by the content that the compiler sees, as ccache does, so that only what changed is looked at
+again. Usage: check_tidy.py [FILE...]
+"""
+
+import concurrent.futures
+import hashlib
+import json
+import os
+import pathlib
+import shlex
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+BUILD = ROOT / "build" / "release"
+CACHE = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "vernier-tidy"
+
+
+def preprocessed(entry):
+    """The file with all it includes, comments kept (they can silence checks), without paths."""
+    words = [w for w in shlex.split(entry["command"]) if not w.endswith("ccache")]
+    command = words[:1] + ["-E", "-P", "-C"]
+    skip = False
+    for word in words[1:]:
+        if skip or word in ("-c", "-MD"):
+            skip = False
+        elif word in ("-o", "-MT", "-MF"):
+            skip = True
+        else:
+            command.append(word)
+    return subprocess.run(command, cwd=entry["directory"], check=True, capture_output=True).stdout
+
+
+def checks_of(path):
+    """Every .clang-tidy from the root down to the file's folder."""
+    folders = [folder for folder in [path.parent, *path.parent.parents] if folder.is_relative_to(ROOT)]
+    return b"".join((folder / ".clang-tidy").read_bytes() for folder in folders if (folder / ".clang-tidy").is_file())
+
+
+def check(entry, version):
+    path = pathlib.Path(entry["file"])
+    key = hashlib.sha256(version + checks_of(path) + preprocessed(entry)).hexdigest()
+    stamp = CACHE / key
+    if stamp.exists():
+        return path, "", True
+    run = subprocess.run(["clang-tidy", "--quiet", "-p", str(BUILD), "--extra-arg=-Wno-unknown-warning-option",
+                          str(path)], capture_output=True, text=True, check=False)
+    if run.returncode == 0:
+        stamp.touch()
+        return path, "", False
+    return path, run.stdout + run.stderr, False
+
+
+def main():
+    CACHE.mkdir(parents=True, exist_ok=True)
+    version = subprocess.run(["clang-tidy", "--version"], check=True, capture_output=True).stdout
+    wanted = {str(pathlib.Path(name).resolve()) for name in sys.argv[1:]}
+    entries = [entry for entry in json.loads((BUILD / "compile_commands.json").read_text(encoding="utf-8"))
+               if not wanted or entry["file"] in wanted]
+    failed = remembered = 0
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        for path, report, known in pool.map(lambda entry: check(entry, version), entries):
+            remembered += known
+            if report:
+                failed += 1
+                print(f"{path.relative_to(ROOT)}:\n{report}", flush=True)
+    print(f"clang-tidy: {len(entries)} files, {remembered} of them unchanged since they passed, {failed} with problems")
+    return 1 if failed or not entries else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
