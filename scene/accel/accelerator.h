@@ -79,10 +79,14 @@ class Accelerator {
   virtual std::optional<QueryCost> closest_cost(const Ray&) const { return {}; }
 };
 
+/// Where rays aimed at the seam of triangles are sure to hit one of them.
+enum class Watertight { nowhere, at_edges, at_edges_and_vertices };
+
 /// One line of the table of accelerators.
 struct AcceleratorEntry {
   std::string_view name;
   std::string_view description;
+  Watertight watertight;
   std::unique_ptr<Accelerator> (*build)(const Geometry&);
 };
 

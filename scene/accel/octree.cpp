@@ -205,7 +205,7 @@ bool TriangleOctree::traverse(const Ray& ray, QueryCost* cost, Blocks&& blocks) 
     const unsigned first = size;
     for (unsigned met = slab_ray.meets(octant_planes(top.cell), ray.t_min, blocks.t_max(), enters); met;
          met &= met - 1) {
-      const auto i = static_cast<unsigned>(__builtin_ctz(met));
+      const auto i = lowest(met);
       if (node[i] == 0) continue;
       const Entry entry{node[i], enters[i], top.cell.octant(i)};
       unsigned place = size++;

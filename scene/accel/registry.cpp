@@ -9,14 +9,19 @@
 namespace vernier {
 
 std::span<const AcceleratorEntry> accelerators() {
+  using enum Watertight;
   static constexpr std::array table{
-      AcceleratorEntry{"embree", "Embree in robust mode: no leaks at edges", build_embree_robust},
-      AcceleratorEntry{"embree-fast", "Embree in fast mode: leaks at edges and vertices", build_embree_fast},
-      AcceleratorEntry{"bvh", "our own, watertight at edges and vertices: the reference", build_bvh},
-      AcceleratorEntry{"bvh-moeller", "our own with the test of Moeller and Trumbore, which leaks",
-                       build_bvh_moeller},
-      AcceleratorEntry{"octree", "triangles in every cell they touch, to compare with bvh", build_octree},
-      AcceleratorEntry{"brute_force", "every triangle for every ray, for tests", build_brute_force},
+      AcceleratorEntry{"embree", "Embree, robust mode: may leak at vertices", at_edges, build_embree_robust},
+      AcceleratorEntry{"embree-fast", "Embree, fast mode: leaks at edges and vertices", nowhere,
+                       build_embree_fast},
+      AcceleratorEntry{"bvh", "our own: watertight, the same answers on every machine", at_edges_and_vertices,
+                       build_bvh},
+      AcceleratorEntry{"bvh-moeller", "our own with the Moeller-Trumbore test: leaks at edges and vertices",
+                       nowhere, build_bvh_moeller},
+      AcceleratorEntry{"octree", "triangles in every cell they touch, to compare with", at_edges_and_vertices,
+                       build_octree},
+      AcceleratorEntry{"brute_force", "every triangle for every ray, for tests", at_edges_and_vertices,
+                       build_brute_force},
   };
   return table;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
+#include <limits>
 
 #ifdef __SSE2__
 #include <immintrin.h>
@@ -20,7 +22,7 @@ using Mask8 = int32_t __attribute__((vector_size(32)));
 /// Bit i is lane i.
 inline unsigned lane_bits(const Mask4& mask) {
 #ifdef __SSE2__
-  return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<const __m128&>(mask)));
+  return static_cast<unsigned>(_mm_movemask_ps(std::bit_cast<__m128>(mask)));
 #else
   unsigned bits = 0;
   for (unsigned lane = 0; lane < 4; ++lane) bits |= (mask[lane] & 1u) << lane;
@@ -30,13 +32,26 @@ inline unsigned lane_bits(const Mask4& mask) {
 
 inline unsigned lane_bits(const Mask8& mask) {
 #ifdef __AVX__
-  return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<const __m256&>(mask)));
+  return static_cast<unsigned>(_mm256_movemask_ps(std::bit_cast<__m256>(mask)));
 #else
   unsigned bits = 0;
   for (unsigned lane = 0; lane < 8; ++lane) bits |= (mask[lane] & 1u) << lane;
   return bits;
 #endif
 }
+
+/// Index of the lowest bit that is set.
+inline unsigned lowest(unsigned bits) { return static_cast<unsigned>(std::countr_zero(bits)); }
+
+/// The sign bits alone.
+inline Mask4 signs_of(const Float4& x) {
+  return std::bit_cast<Mask4>(x) & std::numeric_limits<int32_t>::min();
+}
+/// x with its sign flipped where `signs` says.
+inline Float4 flipped(const Float4& x, const Mask4& signs) {
+  return std::bit_cast<Float4>(std::bit_cast<Mask4>(x) ^ signs);
+}
+inline Float4 magnitude(const Float4& x) { return flipped(x, signs_of(x)); }
 
 /// `a` where it is the greater, else `b`: a NaN in `a` gives `b`.
 inline void keep_greater(const Float8& a, Float8& b) { b = a > b ? a : b; }

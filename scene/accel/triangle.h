@@ -39,9 +39,10 @@ struct ShearedRay {
 
   ShearedRay(const Vec3f& o, const Vec3f& d) : origin(o) {
     const Vec3f size = abs(d);
-    kz = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
-    kx = (kz + 1) % 3;
-    ky = (kx + 1) % 3;
+    kz = size.y > size.x;
+    kz = size.z > size[kz] ? 2 : kz;
+    kx = kz == 2 ? 0 : kz + 1;
+    ky = kx == 2 ? 0 : kx + 1;
     dz = d[kz];
     sx = d[kx] / dz;
     sy = d[ky] / dz;
@@ -81,10 +82,10 @@ inline std::optional<TriangleHit> intersect_watertight(const ShearedRay& ray, co
     w = weights->z;
   } else {
     if (!((u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0))) return {};
-    const float det = u + v + w;
-    u = u / det;
-    v = v / det;
-    w = w / det;
+    const float inv_det = 1 / (u + v + w);
+    u *= inv_det;
+    v *= inv_det;
+    w *= inv_det;
   }
   return TriangleHit{(u * az + v * bz + w * cz) / ray.dz, v, w};
 }

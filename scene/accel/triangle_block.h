@@ -6,7 +6,7 @@
 namespace vernier {
 
 /// Four triangles, tested at once. A block with fewer repeats its last.
-struct TriangleBlock {
+struct alignas(64) TriangleBlock {
   static constexpr unsigned lanes = 4;
   Float4 vertex[3][3];  ///< [vertex][axis]
   uint32_t instance[lanes], primitive[lanes];
@@ -49,10 +49,10 @@ inline unsigned WatertightTest::test(const TriangleBlock& block, const Ray& ray,
   const Mask4 undecided = (u == 0) | (v == 0) | (w == 0);
   const unsigned undecided_bits = lane_bits(undecided);
   if ((lane_bits(inside) | undecided_bits) == 0) return 0;
-  const Float4 det = u + v + w;
-  u = u / det;
-  v = v / det;
-  w = w / det;
+  const Float4 inv_det = 1 / (u + v + w);
+  u *= inv_det;
+  v *= inv_det;
+  w *= inv_det;
   if (undecided_bits) [[unlikely]] {
     for (unsigned i = 0; i < TriangleBlock::lanes; ++i) {
       if (!(undecided_bits >> i & 1)) continue;

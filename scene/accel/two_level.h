@@ -174,7 +174,7 @@ bool TwoLevel<Structure, Test>::search(const Structure& structure, const Placed*
       BlockHits found;
       for (unsigned lanes = Test::test(block, ray, world.t_min, hits.t_max, found); lanes;
            lanes &= lanes - 1) {
-        const auto lane = static_cast<unsigned>(__builtin_ctz(lanes));
+        const auto lane = lowest(lanes);
         const RawHit hit{found.t[lane], found.u[lane], found.v[lane],
                          placed ? placed->instance : block.instance[lane], block.primitive[lane]};
         const bool filtered = geometry.filter && geometry.instances[hit.instance].filtered;

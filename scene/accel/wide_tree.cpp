@@ -236,8 +236,8 @@ void gather_children(const BinaryNode& node, unsigned places, std::vector<const 
 
 WideTree::WideTree(std::span<BuildItem> items, unsigned leaf_size) {
   if (items.empty()) return;
-  if (items.size() >= WideNode::leaf_flag)
-    throw Error(ErrorKind::input, "more than 2^31 triangles in one mesh; split the scene");
+  if (items.size() >= std::numeric_limits<uint32_t>::max())
+    throw Error(ErrorKind::input, "more than 2^32 triangles in one mesh; split the scene");
   Range all{items, {}, {}, 0};
   measure(all);
   bounds_ = all.box;
@@ -248,7 +248,7 @@ WideTree::WideTree(std::span<BuildItem> items, unsigned leaf_size) {
   const auto add_leaf = [&](const BinaryNode& leaf) {
     leaves_.push_back({static_cast<uint32_t>(leaf.range.items.data() - items.data()),
                        static_cast<uint32_t>(leaf.range.items.size())});
-    return WideNode::leaf_flag | static_cast<uint32_t>(leaves_.size() - 1);
+    return static_cast<uint32_t>(leaves_.size() - 1);
   };
   const auto add_node = [&](const auto& self, const BinaryNode& node) -> uint32_t {
     std::vector<const BinaryNode*> children;
@@ -261,9 +261,13 @@ WideTree::WideTree(std::span<BuildItem> items, unsigned leaf_size) {
     const auto index = static_cast<uint32_t>(nodes_.size());
     nodes_.emplace_back();
     for (unsigned slot = 0; slot < children.size(); ++slot) {
-      const uint32_t ref = children[slot]->left ? self(self, *children[slot]) : add_leaf(*children[slot]);
-      nodes_[index].set_box(slot, children[slot]->range.box);
-      nodes_[index].child[slot] = ref;
+      const BinaryNode& child = *children[slot];
+      const uint32_t place = child.left ? self(self, child) : add_leaf(child);
+      WideNode& wide = nodes_[index];
+      wide.set_box(slot, child.range.box);
+      wide.child[slot] = place;
+      wide.used |= static_cast<uint8_t>(1u << slot);
+      if (!child.left) wide.leaf |= static_cast<uint8_t>(1u << slot);
     }
     return index;
   };

@@ -22,10 +22,10 @@ using Planes = std::array<Float8, 6>;
 /// Boxes of up to eight children, each child another node, a leaf, or empty (a box that no ray meets).
 struct alignas(64) WideNode {
   static constexpr unsigned width = 8;
-  static constexpr uint32_t leaf_flag = 1u << 31;
 
   Planes planes;
-  uint32_t child[width]{};  ///< node index, or leaf_flag | leaf index; 0, which is the root, for none
+  uint32_t child[width]{};     ///< index of a leaf or a node
+  uint8_t used = 0, leaf = 0;  ///< bit i: child i is there; is a leaf
 
   WideNode();
   void set_box(unsigned slot, const Bounds& box);
@@ -40,8 +40,7 @@ struct alignas(64) WideNode {
 /// for by two ulps of the reciprocal (Woop, Benthin, Wald 2013, section 4; Ize 2013, "Robust BVH Ray
 /// Traversal", JCGT 2(2)).
 struct SlabRay {
-  float near_origin[3], far_origin[3];
-  float near_scale[3], far_scale[3];
+  Float4 near_origin, far_origin, near_scale, far_scale;  ///< x, y, z
   unsigned near_plane[3], far_plane[3];
 
   /// `distortion` widens the slack where rays are rounded once more on their way into a mesh's space.
@@ -96,20 +95,22 @@ class WideTree {
 inline SlabRay::SlabRay(const Vec3f& origin, const Vec3f& direction, const Bounds& scene, float distortion) {
   constexpr float unit_roundoff = std::numeric_limits<float>::epsilon() / 2;
   constexpr float wider = 1 + 2 * std::numeric_limits<float>::epsilon(), narrower = 2 - wider;
-  const Vec3f reach = max(abs(scene.lower - origin), abs(scene.upper - origin));
-  const float farthest = max_component(reach);
+  const auto lanes = [](const Vec3f& v) { return Float4{v.x, v.y, v.z, 0}; };
+  const Float4 o = lanes(origin), d = lanes(direction);
+  const Float4 below = magnitude(lanes(scene.lower) - o), above = magnitude(lanes(scene.upper) - o);
+  const Float4 reach = below > above ? below : above;
+  const float farthest = std::max(reach[0], std::max(reach[1], reach[2]));
+  // Where the moved origin is rounded, it may lose half an ulp of itself.
+  const Float4 slack = 6 * unit_roundoff * distortion * (reach + farthest) + 2 * unit_roundoff * magnitude(o);
+  const Mask4 backward = signs_of(d);
+  const Float4 onward = flipped(slack, backward), scale = 1 / d;
+  near_origin = o + onward;
+  far_origin = o - onward;
+  near_scale = scale * narrower;
+  far_scale = scale * wider;
   for (int axis = 0; axis < 3; ++axis) {
-    const bool backward = std::signbit(direction[axis]);
-    // Where the moved origin is rounded, it may lose half an ulp of itself.
-    const float slack = 6 * unit_roundoff * distortion * (reach[axis] + farthest) +
-                        2 * unit_roundoff * std::abs(origin[axis]);
-    const float scale = 1 / direction[axis];
-    near_origin[axis] = origin[axis] + (backward ? -slack : slack);
-    far_origin[axis] = origin[axis] - (backward ? -slack : slack);
-    near_scale[axis] = scale * narrower;
-    far_scale[axis] = scale * wider;
-    near_plane[axis] = static_cast<unsigned>(backward ? axis + 3 : axis);
-    far_plane[axis] = static_cast<unsigned>(backward ? axis : axis + 3);
+    near_plane[axis] = static_cast<unsigned>(axis + (backward[axis] ? 3 : 0));
+    far_plane[axis] = static_cast<unsigned>(axis + (backward[axis] ? 0 : 3));
   }
 }
 
@@ -135,7 +136,7 @@ inline void prefetch_lines(const void* memory, size_t bytes) {
 template <bool ordered, typename Leaves>
 bool WideTree::traverse(const SlabRay& ray, float t_min, QueryCost* cost, Leaves&& leaves) const {
   struct Entry {
-    uint32_t ref;
+    uint32_t node;
     float enters;
   };
   if (nodes_.empty()) return false;
@@ -143,39 +144,36 @@ bool WideTree::traverse(const SlabRay& ray, float t_min, QueryCost* cost, Leaves
   unsigned size = 0;
   Entry next{0, t_min};
   while (true) {
-    if (next.ref & WideNode::leaf_flag) {
-      if (leaves.visit(next.ref & ~WideNode::leaf_flag)) return true;
-    } else {
-      const WideNode& node = nodes_[next.ref];
-      if (cost) ++cost->nodes;
-      Float8 enters;
-      unsigned met = ray.meets(node.planes, t_min, leaves.t_max(), enters);
-      const auto take_one = [&] {
-        const auto slot = static_cast<unsigned>(__builtin_ctz(met));
-        met &= met - 1;
-        const uint32_t ref = node.child[slot];
-        if (ref & WideNode::leaf_flag)
-          leaves.prefetch(ref & ~WideNode::leaf_flag);
-        else
-          prefetch_lines(&nodes_[ref], sizeof(WideNode));
-        return Entry{ref, enters[slot]};
-      };
-      if (met) {
-        next = take_one();
-        const unsigned first = size;
-        while (met) {
-          Entry other = take_one();
-          unsigned place = size++;
-          if (ordered) {  // the nearest is next, the others lie on the stack with the farthest deepest
-            if (other.enters < next.enters) std::swap(other, next);
-            for (; place > first && stack[place - 1].enters < other.enters; --place)
-              stack[place] = stack[place - 1];
-          }
-          stack[place] = other;
-        }
+    const WideNode& node = nodes_[next.node];
+    if (cost) ++cost->nodes;
+    Float8 enters;
+    const unsigned met = ray.meets(node.planes, t_min, leaves.t_max(), enters);
+    const unsigned met_leaves = met & node.leaf, met_nodes = met & ~unsigned{node.leaf};
+    for (unsigned slots = met_leaves; slots; slots &= slots - 1) leaves.prefetch(node.child[lowest(slots)]);
+    for (unsigned slots = met_nodes; slots; slots &= slots - 1)
+      prefetch_lines(&nodes_[node.child[lowest(slots)]], sizeof(WideNode));
+
+    // Leaves first, while the nodes are on their way from memory: a hit there often spares those.
+    for (unsigned slots = met_leaves; slots; slots &= slots - 1)
+      if (enters[lowest(slots)] <= leaves.t_max() && leaves.visit(node.child[lowest(slots)])) return true;
+
+    // The nearest node is next; the others lie on the stack, the farthest deepest.
+    const unsigned first = size;
+    for (unsigned slots = met_nodes; slots; slots &= slots - 1) {
+      Entry entry{node.child[lowest(slots)], enters[lowest(slots)]};
+      if (slots == met_nodes) {
+        next = entry;
         continue;
       }
+      unsigned place = size++;
+      if (ordered) {
+        if (entry.enters < next.enters) std::swap(entry, next);
+        for (; place > first && stack[place - 1].enters < entry.enters; --place)
+          stack[place] = stack[place - 1];
+      }
+      stack[place] = entry;
     }
+    if (met_nodes && next.enters <= leaves.t_max()) continue;
     do {
       if (size == 0) return false;
       next = stack[--size];
@@ -188,10 +186,9 @@ void WideTree::refit(const LeafBox& leaf_box) {
   for (size_t i = nodes_.size(); i-- > 0;) {
     WideNode& node = nodes_[i];
     for (unsigned slot = 0; slot < WideNode::width; ++slot) {
-      if (node.child[slot] == 0) continue;
-      const uint32_t ref = node.child[slot];
-      node.set_box(slot,
-                   ref & WideNode::leaf_flag ? leaf_box(ref & ~WideNode::leaf_flag) : nodes_[ref].bounds());
+      if (!(node.used >> slot & 1)) continue;
+      const uint32_t child = node.child[slot];
+      node.set_box(slot, node.leaf >> slot & 1 ? leaf_box(child) : nodes_[child].bounds());
     }
   }
   if (!nodes_.empty()) bounds_ = nodes_[0].bounds();

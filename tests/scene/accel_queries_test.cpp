@@ -1,0 +1,274 @@
+#include "scene/accel/bvh.h"
+#include "scene/accel/proof/agreement.h"
+#include "tests/scene/accel_support.h"
+
+namespace vernier {
+namespace {
+
+using namespace proof;
+using test::EveryAccelerator;
+using test::make_ray;
+using test::same_bits;
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+/// Squares z = 1, 2, 3, two triangles each, and which hits a downward ray from z = 4 has.
+struct Sheets {
+  Soup soup;
+  Sheets() {
+    for (const float z : {1.f, 2.f, 3.f})
+      soup.add({{-1, -1, z}, {1, -1, z}, {-1, 1, z}, {1, 1, z}}, {{0, 1, 2}, {1, 3, 2}});
+  }
+};
+const Vec3f above{.25f, -.5f, 4}, down{0, 0, -1};
+
+class Queries : public EveryAccelerator {};
+
+TEST_P(Queries, FindsTheNearestHitWithItsBarycentrics) {
+  Sheets sheets;
+  const auto hit = build(sheets.soup)->closest(make_ray(above, down));
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit->t, 1);
+  EXPECT_EQ(hit->instance, 2u);
+  EXPECT_EQ(hit->primitive, 0u);
+  EXPECT_FLOAT_EQ(hit->u, .625f);  // weight of the second vertex
+  EXPECT_FLOAT_EQ(hit->v, .25f);   // of the third
+}
+
+TEST_P(Queries, ListsAllHitsByDistanceEachTriangleOnce) {
+  Sheets sheets;
+  std::vector<RawHit> hits(7);
+  const auto accelerator = build(sheets.soup);
+  accelerator->all_hits(make_ray(above, down), hits);
+  ASSERT_EQ(hits.size(), 3u);
+  for (uint32_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(hits[i].t, float(1 + i));
+    EXPECT_EQ(hits[i].instance, 2 - i);
+  }
+  accelerator->all_hits(make_ray(above, down, 1.5f, 2.5f), hits);
+  ASSERT_EQ(hits.size(), 1u);
+  EXPECT_EQ(hits[0].instance, 1u);
+}
+
+TEST_P(Queries, TakesTheIntervalAsOpen) {
+  Sheets sheets;
+  const auto accelerator = build(sheets.soup);
+  const auto t = [&](float t_min, float t_max) {
+    const Ray ray = make_ray(above, down, t_min, t_max);
+    const auto hit = accelerator->closest(ray);
+    EXPECT_EQ(hit.has_value(), accelerator->occluded(ray));
+    return hit ? hit->t : 0;
+  };
+  EXPECT_EQ(t(0, 1), 0);
+  EXPECT_EQ(t(0, 1.0001f), 1);
+  EXPECT_EQ(t(1, infinity), 2);
+  EXPECT_EQ(t(.9999f, infinity), 1);
+  EXPECT_EQ(t(1, 2), 0);
+  EXPECT_EQ(t(3, infinity), 0);
+  EXPECT_EQ(t(2, 1), 0);
+  EXPECT_EQ(t(0, 0), 0);
+  EXPECT_EQ(t(-5, infinity), 1);
+  EXPECT_EQ(t(-5, -1), 0);
+  EXPECT_EQ(t(infinity, infinity), 0);
+  EXPECT_EQ(t(nan, infinity), 0);
+  EXPECT_EQ(t(0, nan), 0);
+}
+
+TEST_P(Queries, DoesNotMeetTheSurfaceItStartsOn) {
+  Sheets sheets;
+  const auto hit = build(sheets.soup)->closest(make_ray({.25f, -.5f, 3}, down));
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit->instance, 1u);
+}
+
+TEST_P(Queries, MissesWithInvalidRays) {
+  Sheets sheets;
+  const auto accelerator = build(sheets.soup);
+  std::vector<RawHit> hits;
+  for (const float bad : {nan, infinity, -infinity}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Ray ray = make_ray(above, down);
+      ray.origin[axis] = bad;
+      EXPECT_FALSE(accelerator->closest(ray));
+      EXPECT_FALSE(accelerator->occluded(ray));
+      ray = make_ray(above, down);
+      ray.direction[axis] = bad;
+      EXPECT_FALSE(accelerator->closest(ray));
+      accelerator->all_hits(ray, hits);
+      EXPECT_TRUE(hits.empty());
+    }
+  }
+  EXPECT_FALSE(accelerator->closest(make_ray(above, {0, 0, 0})));
+  EXPECT_FALSE(accelerator->closest(make_ray(above, {0, -0.f, 0})));
+}
+
+TEST_P(Queries, CountsBothSides) {
+  Sheets sheets;
+  const auto hit = build(sheets.soup)->closest(make_ray({.25f, -.5f, 0}, {0, 0, 1}));
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit->instance, 0u);
+}
+
+TEST_P(Queries, MissesInAnEmptySceneAndWithEmptyMeshes) {
+  Soup nothing, empty_mesh;
+  empty_mesh.add({}, {});
+  empty_mesh.add({{0, 0, 0}}, {});
+  for (const Soup* soup : {&nothing, &empty_mesh}) {
+    const auto accelerator = build(*soup);
+    std::vector<RawHit> hits(3);
+    EXPECT_FALSE(accelerator->closest(make_ray(above, down)));
+    EXPECT_FALSE(accelerator->occluded(make_ray(above, down)));
+    accelerator->all_hits(make_ray(above, down), hits);
+    EXPECT_TRUE(hits.empty());
+  }
+}
+
+TEST_P(Queries, MissesTrianglesWithoutAreaAndRaysInTheirPlane) {
+  Soup soup;
+  soup.add({{0, 0, 0}, {1, 2, 3}, {2, 4, 6}, {1, 0, 0}, {0, 1, 0}},
+           {{0, 1, 2}, {0, 0, 1}, {1, 1, 1}, {0, 3, 4}});
+  const auto accelerator = build(soup);
+  EXPECT_FALSE(accelerator->closest(make_ray({1, 2, 9}, down)));
+  EXPECT_FALSE(accelerator->closest(make_ray({.5f, 1, 9}, down)));
+  EXPECT_FALSE(accelerator->closest(make_ray({-1, .5f, 0}, {1, 0, 0})));
+  // pbrt's BadCases: a ray at a triangle that is a line
+  Soup line;
+  line.add({{-1113.45459f, -79.049614f, -56.2431908f},
+            {-1113.45459f, -87.0922699f, -56.2431908f},
+            {-1113.45459f, -79.2090149f, -56.2431908f}},
+           {{0, 1, 2}});
+  EXPECT_FALSE(build(line)->closest(make_ray({-1081.47925f, 99.9999542f, 87.7701111f},
+                                             {-32.1072998f, -183.355865f, -144.607635f}, 0, .9999f)));
+}
+
+TEST_P(Queries, DropsTrianglesThatAreNotFinite) {
+  Soup soup;
+  soup.add({{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, {nan, 0, 1}, {0, infinity, 1}, {-infinity, 0, nan}},
+           {{0, 1, 3}, {0, 1, 2}, {1, 2, 4}, {0, 2, 5}, {3, 4, 5}});
+  const auto accelerator = build(soup);
+  Dice dice(1, 0);
+  for (int i = 0; i < 1000; ++i) {
+    const auto hit = accelerator->closest(make_ray(dice.in_cube(5), dice.direction()));
+    if (hit) {
+      EXPECT_EQ(hit->primitive, 1u);
+      EXPECT_TRUE(std::isfinite(hit->t));
+    }
+  }
+  EXPECT_TRUE(accelerator->occluded(make_ray({0, 0, 2}, down)));
+}
+
+TEST_P(Queries, SurvivesDenormalAndHugeCoordinates) {
+  if (GetParam().watertight != Watertight::at_edges_and_vertices) GTEST_SKIP() << "makes no such claim";
+  for (const float size : {1e-40f, 1e-20f, 1e9f, 1e12f, 1e15f, 1e17f}) {
+    Soup soup;
+    soup.add({{0, 0, 0}, {size, 0, 0}, {0, size, 0}}, {{0, 1, 2}});
+    const auto accelerator = build(soup);
+    const auto hit = accelerator->closest(make_ray({.25f * size, .25f * size, size}, down));
+    if (size >= 1e-12f && size <= 1e17f && size > 1e-19f) {
+      ASSERT_TRUE(hit) << size;
+      EXPECT_NEAR(hit->t / size, 1, 1e-6) << size;
+      EXPECT_NEAR(hit->u, .25, 1e-6) << size;
+    }
+    const auto beside = accelerator->closest(make_ray({1.1f * size, .25f * size, size}, down));
+    EXPECT_FALSE(beside && std::abs(beside->t / size - 1) < 1e-3f) << size;
+  }
+}
+
+TEST_P(Queries, ScalesWithDirectionsOfAnyLength) {
+  Sheets sheets;
+  const auto accelerator = build(sheets.soup);
+  for (const float length : {1e-30f, 1e-20f, 1e-12f, 1e-3f, 1e3f, 1e12f, 1e20f, 1e30f}) {
+    const auto hit = accelerator->closest(make_ray(above, down * length));
+    ASSERT_TRUE(hit) << length;
+    EXPECT_EQ(hit->instance, 2u);
+    EXPECT_NEAR(hit->t * length, 1, 1e-6) << length;
+    EXPECT_FALSE(accelerator->occluded(make_ray(above, down * length, 0, .99f / length))) << length;
+  }
+}
+
+TEST_P(Queries, IgnoresTheSignsOfZeros) {
+  // A unit box; rays with zeros in their directions from its faces, edges, corners and beyond.
+  Soup soup;
+  soup.add({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}},
+           {{0, 2, 1},
+            {1, 2, 3},
+            {4, 5, 6},
+            {5, 7, 6},
+            {0, 1, 4},
+            {1, 5, 4},
+            {2, 6, 3},
+            {3, 6, 7},
+            {0, 4, 2},
+            {2, 4, 6},
+            {1, 3, 5},
+            {3, 7, 5}});
+  const auto accelerator = build(soup);
+  const float places[] = {-1, 0, .5f, 1, 2}, steps[] = {-1, 0, 1};
+  for (const float x : places)
+    for (const float y : places)
+      for (const float z : places)
+        for (const float dx : steps)
+          for (const float dy : steps)
+            for (const float dz : steps) {
+              if (dx == 0 && dy == 0 && dz == 0) continue;
+              const auto plain = accelerator->closest(make_ray({x, y, z}, {dx, dy, dz}));
+              for (int signs = 1; signs < 8; ++signs) {
+                Vec3f d{dx, dy, dz};
+                for (int axis = 0; axis < 3; ++axis)
+                  if (d[axis] == 0 && (signs >> axis & 1)) d[axis] = -0.f;
+                ASSERT_TRUE(same_bits(plain, accelerator->closest(make_ray({x, y, z}, d))))
+                    << x << ' ' << y << ' ' << z << " along " << dx << ' ' << dy << ' ' << dz;
+              }
+            }
+}
+
+TEST_P(Queries, StaysWithinTheForwardErrorBound) {
+  if (GetParam().watertight != Watertight::at_edges_and_vertices) GTEST_SKIP() << "makes no such claim";
+  for (const float needle : {1.f, .1f}) {
+    const HitErrors errors = hit_errors(GetParam().build, needle, 0, 30'000, 5);
+    EXPECT_EQ(errors.wrong.events, 0u) << needle;
+    EXPECT_LE(errors.t, 1) << needle;
+    EXPECT_LE(errors.u, 1) << needle;
+    EXPECT_LE(errors.v, 1) << needle;
+  }
+}
+
+/// Lets every other sheet through, and remembers whether it saw the ray in world space.
+class EverySecondSheet : public HitFilter {
+ public:
+  bool accept(const Ray& ray, const RawHit& hit) const override {
+    EXPECT_EQ(ray.origin, above);
+    EXPECT_NEAR((ray.origin + ray.direction * hit.t).z, float(hit.instance + 1), 1e-5);
+    return hit.instance % 2 == 0;
+  }
+};
+
+TEST_P(Queries, AsksTheFilterWhereInstancesAreFiltered) {
+  EverySecondSheet filter;
+  Soup soup;
+  const uint32_t mesh =
+      soup.add_mesh({{-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 3, 2}});
+  for (uint32_t i = 0; i < 4; ++i) {
+    Transform to_world;
+    to_world.origin.z = float(i + 1);
+    soup.add_instance(mesh, to_world, i < 3);
+  }
+  soup.set_filter(&filter);
+  const auto accelerator = build(soup);
+  const auto hit = accelerator->closest(make_ray(above, down));  // starts on the unfiltered sheet 3
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit->instance, 2u);
+  EXPECT_FALSE(accelerator->occluded(make_ray(above, down, 1.5f, 2.5f)));
+  EXPECT_TRUE(accelerator->occluded(make_ray(above, down, 2.5f, 3.5f)));
+  std::vector<RawHit> hits;
+  accelerator->all_hits(make_ray(above, down), hits);
+  ASSERT_EQ(hits.size(), 2u);
+  EXPECT_EQ(hits[0].instance, 2u);
+  EXPECT_EQ(hits[1].instance, 0u);
+}
+
+FOR_EVERY_ACCELERATOR(Queries);
+
+}  // namespace
+}  // namespace vernier

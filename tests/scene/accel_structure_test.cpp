@@ -1,0 +1,225 @@
+#include "core/base/parallel.h"
+#include "scene/accel/brute_force.h"
+#include "scene/accel/bvh.h"
+#include "scene/accel/octree.h"
+#include "scene/accel/proof/agreement.h"
+#include "tests/scene/accel_support.h"
+
+namespace vernier {
+namespace {
+
+using namespace proof;
+using test::EveryAccelerator;
+using test::make_ray;
+using test::same_bits;
+
+/// Random rays in and around [-1, 1]^3 times `size` have the same answers, to the bit, as the reference's
+/// brute force.
+void expect_brute_force_answers(const Accelerator& accelerator, const Soup& soup, float size, int rays) {
+  const auto truth = build_brute_force(soup.geometry());
+  Dice dice(11, 0);
+  std::vector<RawHit> expected, found;
+  for (int i = 0; i < rays; ++i) {
+    const Ray ray = make_ray(dice.in_cube(1.5f * size), dice.direction());
+    ASSERT_TRUE(same_bits(accelerator.closest(ray), truth->closest(ray))) << i;
+    ASSERT_EQ(accelerator.occluded(ray), truth->occluded(ray)) << i;
+    truth->all_hits(ray, expected);
+    accelerator.all_hits(ray, found);
+    ASSERT_TRUE(std::ranges::equal(found, expected, [](const RawHit& a, const RawHit& b) {
+      return same_bits(a, b);
+    })) << i;
+  }
+}
+
+TEST(OwnAccelerators, AnswerAlikeToTheBit) {
+  for (uint64_t seed = 1; seed <= 20; ++seed) {
+    Dice dice(seed, 0);
+    Soup soup;
+    add_random_triangles(soup, dice, 1 + dice.below(300), dice.magnitude(.01f, 1));
+    add_waves(soup, 6);
+    const uint32_t mesh = dice.below(2);
+    for (int i = 0; i < 5; ++i) {
+      const Vec3f stretch{dice.magnitude(.1f, 10), dice.magnitude(.1f, 10),
+                          i == 4 ? 0.f : dice.uniform(-1, 1)};
+      soup.add_instance(mesh, random_placement(dice, stretch, dice.in_cube(3)));
+    }
+    for (const auto build : {build_bvh, build_octree})
+      expect_brute_force_answers(*build(soup.geometry()), soup, 2, 1000);
+  }
+}
+
+/// Chosen so that a bad tree builder loops, overflows its stack or builds a list.
+struct Stress {
+  std::string name;
+  void (*fill)(Soup&);
+  float size;
+};
+
+void same_centroid(Soup& soup) {
+  Dice dice(1, 0);
+  std::vector<Vec3f> positions;
+  std::vector<Triangle> triangles;
+  for (uint32_t i = 0; i < 20'000; ++i) {
+    const Vec3f a = dice.direction(), b = dice.direction();
+    positions.insert(positions.end(), {a, b, -(a + b)});
+    triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  soup.add(std::move(positions), std::move(triangles));
+}
+
+void copies_of_one_triangle(Soup& soup) {
+  soup.add({{-1, -1, 0}, {1, -1, .5f}, {0, 1, 0}}, std::vector<Triangle>(20'000, Triangle{0, 1, 2}));
+}
+
+void long_diagonals(Soup& soup) {
+  std::vector<Vec3f> positions;
+  std::vector<Triangle> triangles;
+  for (uint32_t i = 0; i < 2000; ++i) {
+    const float x = float(i) * 1e-3f;
+    positions.insert(positions.end(), {{x - 1, -1, -1}, {x - .999f, -1, -1}, {1, 1, 1}});
+    triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  soup.add(std::move(positions), std::move(triangles));
+}
+
+void exponential_spacing(Soup& soup) {
+  std::vector<Vec3f> positions;
+  std::vector<Triangle> triangles;
+  for (int i = -120; i <= 60; ++i) {
+    const float x = std::ldexp(1.f, i);
+    const auto first = static_cast<uint32_t>(positions.size());
+    positions.insert(positions.end(), {{x, 0, 0}, {1.25f * x, 0, 0}, {x, .25f * x, .125f * x}});
+    triangles.push_back({first, first + 1, first + 2});
+  }
+  soup.add(std::move(positions), std::move(triangles));
+}
+
+void one_triangle(Soup& soup) { soup.add({{-1, -1, 0}, {1, -1, .5f}, {0, 1, 0}}, {{0, 1, 2}}); }
+
+void tiny_in_huge(Soup& soup) {
+  Dice dice(2, 0);
+  add_blob(soup, dice, 1, 1e6f, {0, 0, 0});
+  add_blob(soup, dice, 2, 1e-3f, {.5f, .5f, .5f});
+}
+
+const Stress stresses[] = {
+    {"SameCentroid", same_centroid, 1},   {"CopiesOfOneTriangle", copies_of_one_triangle, 1},
+    {"LongDiagonals", long_diagonals, 1}, {"ExponentialSpacing", exponential_spacing, 4},
+    {"OneTriangle", one_triangle, 1},     {"TinyInHuge", tiny_in_huge, 1e6f}};
+
+class StructureStress : public testing::TestWithParam<Stress> {};
+
+TEST_P(StructureStress, ChangesNoAnswer) {
+  Soup soup;
+  GetParam().fill(soup);
+  for (const auto build : {build_bvh, build_octree})
+    expect_brute_force_answers(*build(soup.geometry()), soup, GetParam().size, 300);
+}
+
+TEST_P(StructureStress, IsHeldByEveryAccelerator) {
+  for (const auto& entry : accelerators()) {
+    Soup soup;
+    GetParam().fill(soup);
+    const auto reference = build_bvh(soup.geometry()), accelerator = entry.build(soup.geometry());
+    Dice dice(12, 0);
+    int misses = 0;
+    for (int i = 0; i < 300; ++i) {
+      const Ray ray = make_ray(dice.in_cube(1.5f * GetParam().size), dice.direction());
+      misses += accelerator->closest(ray).has_value() != reference->closest(ray).has_value();
+    }
+    EXPECT_LE(misses, 3) << entry.name;  // grazing slivers
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, StructureStress, testing::ValuesIn(stresses),
+                         [](const auto& stress) { return stress.param.name; });
+
+TEST(Bvh, StaysShallowWhereEverySplitPeelsOneTriangle) {
+  Soup soup;
+  exponential_spacing(soup);
+  const Bvh bvh(soup.geometry());
+  const auto cost = bvh.closest_cost(make_ray({-1, .01f, .005f}, {1, 1e-5f, 1e-5f}));
+  ASSERT_TRUE(cost);
+  EXPECT_LE(cost->nodes, 100u);
+}
+
+TEST(Bvh, IsTheSameHoweverManyThreadsBuildIt) {
+  const auto cost_of = [](unsigned threads) {
+    const ThreadLimit limit(threads);
+    Soup soup;
+    add_waves(soup, 150);
+    const Bvh bvh(soup.geometry());
+    Dice dice(5, 0);
+    QueryCost sum;
+    for (int i = 0; i < 2000; ++i) {
+      const auto cost = bvh.closest_cost(make_ray(dice.in_cube(2), dice.direction()));
+      sum.nodes += cost->nodes;
+      sum.blocks += cost->blocks;
+    }
+    return std::pair(sum.nodes, sum.blocks);
+  };
+  EXPECT_EQ(cost_of(1), cost_of(0));
+}
+
+TEST(Bvh, AnswersRightAfterVerticesMoved) {
+  Dice dice(6, 0);
+  Soup soup;
+  add_random_triangles(soup, dice, 500, .2f);
+  soup.add_instance(0, random_placement(dice, {1, 2, 3}, {4, 0, 0}));
+  soup.add_instance(0, random_placement(dice, {1, 1, 0}, {-4, 0, 0}));
+  Bvh bvh(soup.geometry());
+  for (int step = 0; step < 3; ++step) {
+    for (Vec3f& p : soup.positions(0)) p += dice.in_cube(.5f);
+    bvh.refit();
+    expect_brute_force_answers(bvh, soup, 3, 1000);
+  }
+}
+
+class LargeMeshes : public EveryAccelerator {};
+
+TEST_P(LargeMeshes, FindsEveryTriangleOfALargeMesh) {
+  if (GetParam().name == "brute_force") GTEST_SKIP() << "too slow";
+  Soup soup;
+  add_waves(soup, 220);  // 96,800 triangles
+  const auto accelerator = build(soup);
+  const auto& mesh = soup.geometry().meshes[0];
+  for (uint32_t i = 0; i < mesh.triangles.size(); i += 7) {
+    const Corners c = soup.corners(0, i);
+    const Vec3f middle = (c[0] + c[1] + c[2]) / 3;
+    const auto hit = accelerator->closest(make_ray(middle + Vec3f{.001f, .002f, 1}, {-.001f, -.002f, -1}));
+    ASSERT_TRUE(hit) << i;
+    EXPECT_EQ(hit->primitive, i);
+  }
+  EXPECT_GT(accelerator->stats().bytes, mesh.triangles.size() * 10);
+}
+
+TEST_P(LargeMeshes, PicksTheSameOfCoincidingTrianglesAfterARebuild) {
+  Dice dice(7, 0);
+  Soup soup;
+  for (int i = 0; i < 3; ++i) {
+    Dice same(8, 0);
+    add_random_triangles(soup, same, 200, .4f);
+  }
+  const auto first = build(soup), second = build(soup);
+  for (int i = 0; i < 2000; ++i) {
+    const Ray ray = make_ray(dice.in_cube(2), dice.direction());
+    ASSERT_TRUE(same_bits(first->closest(ray), second->closest(ray))) << i;
+  }
+}
+
+FOR_EVERY_ACCELERATOR(LargeMeshes);
+
+TEST(OwnAccelerators, PickTheFirstOfCoincidingTriangles) {
+  Soup soup;
+  copies_of_one_triangle(soup);
+  copies_of_one_triangle(soup);
+  for (const auto build : {build_bvh, build_octree}) {
+    const auto hit = build(soup.geometry())->closest(make_ray({0, 0, 3}, {0, 0, -1}));
+    ASSERT_TRUE(hit);
+    EXPECT_EQ(hit->instance, 0u);
+    EXPECT_EQ(hit->primitive, 0u);
+  }
+}
+
+}  // namespace
+}  // namespace vernier
