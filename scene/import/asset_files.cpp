@@ -72,17 +72,17 @@ std::string percent_decoded(std::string_view text) {
   return decoded;
 }
 
-std::array<int8_t, 256> base64_table() {
-  std::array<int8_t, 256> table;
+std::array<int, 256> base64_table() {
+  std::array<int, 256> table;
   table.fill(-1);
   const std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  for (size_t i = 0; i < digits.size(); ++i) table[uint8_t(digits[i])] = int8_t(i);
+  for (size_t i = 0; i < digits.size(); ++i) table[uint8_t(digits[i])] = int(i);
   return table;
 }
 
 /// RFC 4648, section 4. Returns false on a character outside the alphabet or an impossible length.
 bool decode_base64(std::string_view text, Bytes& bytes) {
-  static const std::array<int8_t, 256> table = base64_table();
+  static const std::array<int, 256> table = base64_table();
   while (!text.empty() && text.back() == '=') text.remove_suffix(1);
   if (text.size() % 4 == 1) return false;
   bytes = Bytes(text.size() * 3 / 4);
