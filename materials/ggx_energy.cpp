@@ -12,8 +12,12 @@ namespace {
 
 constexpr int cosines = 96;
 constexpr int widths = 40;
-constexpr int averages = 256;
-constexpr float least_alpha = 1e-4f;
+constexpr int averages = 8 * (widths - 1) + 1;  // every row of the table and seven between
+
+// Widths are even in roughness, from the narrowest that is no mirror.
+float least_roughness() { return std::sqrt(Ggx::smooth_limit); }
+float width_position(float alpha) { return (std::sqrt(alpha) - least_roughness()) / (1 - least_roughness()); }
+float width_at(float position) { return square(lerp(position, least_roughness(), 1)); }
 
 GgxAlbedo mix(float t, const GgxAlbedo& a, const GgxAlbedo& b) {
   return {lerp(t, a.missing, b.missing), lerp(t, a.bias, b.bias)};
@@ -65,12 +69,12 @@ GgxAlbedo integrate(float cos_theta, float alpha) {
 
 struct Table {
   std::array<std::array<GgxAlbedo, cosines>, widths>
-      directional;                          ///< bias is in excess of a smooth surface's
-  std::array<GgxAlbedo, averages> average;  ///< missing is divided by alpha^2
+      directional;  ///< bias is in excess of a smooth surface's
+  std::array<GgxAlbedo, averages> average;
 
   GgxAlbedo albedo(float cos_theta, float alpha) const {
     const float x = albedo_coordinate(cos_theta, alpha);
-    const float row = std::sqrt(alpha) * float(widths - 1);
+    const float row = std::max(0.f, width_position(alpha)) * float(widths - 1);
     const int index = std::min(int(row), widths - 2);
     GgxAlbedo result =
         mix(row - float(index), interpolate(directional[index], x), interpolate(directional[index + 1], x));
@@ -80,7 +84,7 @@ struct Table {
 };
 
 GgxAlbedo average(const Table& table, float alpha) {
-  constexpr int steps = 256;
+  constexpr int steps = 512;
   double missing = 0, bias = 0;
   for (int s = 0; s < steps; ++s) {
     const float low = albedo_cosine(float(s) / steps, alpha),
@@ -90,7 +94,7 @@ GgxAlbedo average(const Table& table, float alpha) {
     missing += weight * middle.missing;
     bias += weight * middle.bias;
   }
-  return {float(missing / (alpha * alpha)), float(bias)};
+  return {float(missing), float(bias)};
 }
 
 /// On one thread: others may wait for it, and a thread that shares work while it holds them up could be given
@@ -98,12 +102,11 @@ GgxAlbedo average(const Table& table, float alpha) {
 Table make_table() {
   Table table;
   for (int j = 0; j < widths; ++j) {
-    const float alpha = std::max(square(float(j) / (widths - 1)), least_alpha);
+    const float alpha = width_at(float(j) / (widths - 1));
     for (int i = 0; i < cosines; ++i)
       table.directional[j][i] = integrate(albedo_cosine(float(i) / (cosines - 1), alpha), alpha);
   }
-  for (int k = 0; k < averages; ++k)
-    table.average[k] = average(table, std::max(square(float(k) / (averages - 1)), least_alpha));
+  for (int k = 0; k < averages; ++k) table.average[k] = average(table, width_at(float(k) / (averages - 1)));
   return table;
 }
 
@@ -115,14 +118,11 @@ const Table& table() {
 }  // namespace
 
 GgxAlbedo ggx_albedo(float cos_theta, float alpha) {
-  return table().albedo(std::clamp(cos_theta, 0.f, 1.f), std::clamp(alpha, least_alpha, 1.f));
+  return table().albedo(std::clamp(cos_theta, 0.f, 1.f), std::clamp(alpha, Ggx::smooth_limit, 1.f));
 }
 
 GgxAlbedo ggx_average_albedo(float alpha) {
-  const float a = std::clamp(alpha, least_alpha, 1.f);
-  GgxAlbedo result = interpolate(table().average, std::sqrt(a));
-  result.missing *= a * a;
-  return result;
+  return interpolate(table().average, width_position(std::clamp(alpha, Ggx::smooth_limit, 1.f)));
 }
 
 }  // namespace vernier

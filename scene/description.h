@@ -41,9 +41,9 @@ struct CameraDescription {
   enum class Kind { perspective, orthographic };
   std::string name;
   Kind kind = Kind::perspective;
-  float yfov = 0.8f;            ///< perspective: full vertical angle
-  float aspect = 0;             ///< width over height; 0: that of the image
-  float xmag = 1, ymag = 1;     ///< orthographic: half width and half height in metres
+  float yfov = 0.8f;         ///< perspective: full vertical angle
+  float aspect = 0;          ///< width over height; 0: that of the image
+  float xmag = 1, ymag = 1;  ///< orthographic: half width and half height in metres
   Transform to_world;
 };
 

@@ -9,6 +9,8 @@
 namespace vernier {
 namespace {
 
+double squared(double x) { return x * x; }
+
 // Two-sided p-value of Student's t.
 double student_p(double t, double degrees) {
   if (!std::isfinite(degrees)) return std::erfc(t / std::numbers::sqrt2);
@@ -28,7 +30,7 @@ struct Sums {
 
 // p-value of one channel of one pixel; adds to the picture's sums.
 double channel_p(const MeasuredImage& x, const MeasuredImage& y, size_t at, int c, Sums& sums) {
-  const double vx = square(double(x.error.values[at])), vy = square(double(y.error.values[at]));
+  const double vx = squared(double(x.error.values[at])), vy = squared(double(y.error.values[at]));
   const double difference = double(x.mean.values[at]) - y.mean.values[at];
   const double largest = std::max(std::abs(x.mean.values[at]), std::abs(y.mean.values[at]));
   const double rounding = 2 * largest * std::numeric_limits<float>::epsilon();
@@ -38,7 +40,7 @@ double channel_p(const MeasuredImage& x, const MeasuredImage& y, size_t at, int 
   if (beyond == 0) return 1;
   if (vx + vy == 0) return 0;
   // Welch and Satterthwaite's degrees of freedom.
-  const double degrees = square(vx + vy) / (square(vx) / x.degrees + square(vy) / y.degrees);
+  const double degrees = squared(vx + vy) / (squared(vx) / x.degrees + squared(vy) / y.degrees);
   return student_p(beyond / std::sqrt(vx + vy), degrees);
 }
 

@@ -20,15 +20,15 @@ std::vector<double> expected_fractions(const BsdfCase& bsdf_case, const Vec3f& w
   for (const HemisphereChart& chart : charts(bsdf_case, wo))
     for (int j = 0; j < rows; ++j)
       for (int i = 0; i < columns; ++i) {
-        const auto cell = integrate_square<1>(
-            [&](double x, double y) -> std::array<double, 1> {
+        const auto cell = integrate_square(
+            [&](double x, double y) {
               double solid_angle;
               const Vec3f wi(chart.direction((i + x) / columns, (j + y) / rows, solid_angle));
-              return {bsdf_case.bsdf.eval(wo, wi).pdf * solid_angle / (columns * rows)};
+              return bsdf_case.bsdf.eval(wo, wi).pdf * solid_angle / (columns * rows);
             },
             1e-6, 20'000, 1);
-        fractions.push_back(cell.value[0]);
-        sum += cell.value[0];
+        fractions.push_back(cell.value);
+        sum += cell.value;
       }
   fractions.push_back(std::max(0., 1 - sum));
   return fractions;

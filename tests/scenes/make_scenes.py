@@ -78,6 +78,11 @@ class Scene:
         return self.add("meshes", {"name": name, "primitives": [
             {"attributes": accessors, "indices": indices, "material": material}]})
 
+    def with_material(self, mesh, name, material):
+        """The same triangles once more, of another material."""
+        primitive = {**self.json["meshes"][mesh]["primitives"][0], "material": material}
+        return self.add("meshes", {"name": name, "primitives": [primitive]})
+
     def write(self, name):
         text = json.dumps(self.json, indent=1)
         # Arrays of numbers on one line.
@@ -235,6 +240,75 @@ def two_spheres():
     scene.write("two_spheres.gltf")
 
 
+def add_spheres(scene, materials, columns):
+    """A row of spheres for every `columns` materials, from the top left, and a camera that sees them all."""
+    points, triangles = sphere(64, 32)
+    texcoords = [((i % 65) / 64, (i // 65) / 32) for i in range(len(points))]
+    first = scene.mesh("sphere", materials[0], {"POSITION": points, "NORMAL": points, "TEXCOORD_0": texcoords},
+                       triangles)
+    rows = (len(materials) + columns - 1) // columns
+    for i, material in enumerate(materials):
+        name = scene.json["materials"][material]["name"]
+        mesh = first if i == 0 else scene.with_material(first, name, material)
+        scene.node(name=name, mesh=mesh, scale=[0.45] * 3,
+                   translation=[i % columns - (columns - 1) / 2, (rows - 1) / 2 - i // columns, 0])
+    yfov = math.radians(20)
+    camera = scene.add("cameras", {"name": "front", "type": "perspective", "perspective": {
+        "yfov": yfov, "aspectRatio": columns / rows, "znear": 0.1}})
+    scene.node(name="camera", camera=camera, translation=[0, 0, (rows / 2 + 0.05) / math.tan(yfov / 2) + 0.45])
+
+
+def sphere_grid():
+    """Roughness 0 to 1 from left to right, metallic 0, 0.5 and 1 from top to bottom; to be lit by --env."""
+    scene = Scene("tests/scenes/make_scenes.py sphere_grid")
+    materials = [scene.add("materials", {"name": f"metallic {metallic}, roughness {roughness}",
+                                         "pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.4, 0.15, 1],
+                                                                  "metallicFactor": metallic,
+                                                                  "roughnessFactor": roughness}})
+                 for metallic in (0, 0.5, 1) for roughness in (0, 0.25, 0.5, 0.75, 1)]
+    add_spheres(scene, materials, 5)
+    scene.write("sphere_grid.gltf")
+
+
+def layer_spheres():
+    """One sphere for each kind of layer and lobe that the KHR_materials extensions add; to be lit by --env."""
+    scene = Scene("tests/scenes/make_scenes.py layer_spheres")
+    red = [0.7, 0.05, 0.03, 1]
+
+    def material(name, color, metallic, roughness, **extensions):
+        names = {f"KHR_materials_{key}": value for key, value in extensions.items()}
+        for key in names:
+            scene.use_extension(key)
+        return scene.add("materials", {"name": name, "pbrMetallicRoughness": {
+            "baseColorFactor": color, "metallicFactor": metallic, "roughnessFactor": roughness},
+            "extensions": names})
+
+    solid = {"thicknessFactor": 1, "attenuationDistance": 1}
+    add_spheres(scene, [
+        material("clear coat", red, 0, 0.6, clearcoat={"clearcoatFactor": 1}),
+        material("rough coat on metal", [0.9, 0.6, 0.2, 1], 1, 0.5,
+                 clearcoat={"clearcoatFactor": 1, "clearcoatRoughnessFactor": 0.3}),
+        material("sheen", [0.05, 0.03, 0.2, 1], 0, 0.9,
+                 sheen={"sheenColorFactor": [0.9, 0.7, 0.6], "sheenRoughnessFactor": 0.4}),
+        material("anisotropy", [0.8, 0.8, 0.8, 1], 1, 0.25, anisotropy={"anisotropyStrength": 0.8}),
+        material("film on metal", [0.6, 0.6, 0.6, 1], 1, 0.15,
+                 iridescence={"iridescenceFactor": 1, "iridescenceIor": 1.8, "iridescenceThicknessMaximum": 380}),
+        material("film on black plastic", [0.01, 0.01, 0.01, 1], 0, 0.1,
+                 iridescence={"iridescenceFactor": 1, "iridescenceIor": 1.5, "iridescenceThicknessMaximum": 500},
+                 ior={"ior": 2}),
+        material("dispersion", [1, 1, 1, 1], 0, 0, transmission={"transmissionFactor": 1}, volume=solid,
+                 ior={"ior": 1.7}, dispersion={"dispersion": 2}),
+        material("leaf", [0.1, 0.5, 0.05, 1], 0, 0.5, diffuse_transmission={
+            "diffuseTransmissionFactor": 0.7, "diffuseTransmissionColorFactor": [0.6, 0.9, 0.2]}),
+        material("wax", [0.9, 0.8, 0.7, 1], 0, 0.4,
+                 volume={"thicknessFactor": 1, "attenuationDistance": 0.3, "attenuationColor": [0.9, 0.5, 0.2]},
+                 diffuse_transmission={"diffuseTransmissionFactor": 1}),
+        material("rough thin glass", [0.6, 0.8, 1, 1], 0, 0.3, transmission={"transmissionFactor": 1})], 5)
+    scene.write("layer_spheres.gltf")
+
+
 if __name__ == "__main__":
     cornell_box()
     two_spheres()
+    sphere_grid()
+    layer_spheres()

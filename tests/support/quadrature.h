@@ -78,4 +78,17 @@ Integrals<N> integrate_square(const Function& f, double tolerance, int max_evalu
   return total;
 }
 
+struct Integral {
+  double value = 0, error = 0;
+};
+
+/// The same for a function that returns one number.
+template <typename Function>
+Integral integrate_square(const Function& f, double tolerance, int max_evaluations = 200'000, int start = 4) {
+  const auto one =
+      integrate_square<1>([&](double x, double y) { return std::array<double, 1>{double(f(x, y))}; },
+                          tolerance, max_evaluations, start);
+  return {one.value[0], one.error};
+}
+
 }  // namespace vernier::test

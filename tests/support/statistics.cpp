@@ -41,6 +41,7 @@ double chi_square_p_value(std::span<const double> observed, std::span<const doub
   std::iota(order.begin(), order.end(), size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return expected[a] < expected[b]; });
 
+  double impossible = 0;
   double statistic = 0, pooled_observed = 0, pooled_expected = 0;
   int pools = 0;
   const auto close_pool = [&] {
@@ -51,13 +52,14 @@ double chi_square_p_value(std::span<const double> observed, std::span<const doub
   };
   for (const size_t cell : order) {
     if (!(expected[cell] >= 0)) return 0;
+    if (expected[cell] == 0) impossible += observed[cell];
     pooled_observed += observed[cell];
     pooled_expected += expected[cell];
     if (pooled_expected >= least_expected) close_pool();
   }
   // What is left expects less than five; it counts as a pool of its own, which errs on the side of failing.
   if (pooled_expected > 0) close_pool();
-  if (pooled_observed > 0) return 0;
+  if (impossible >= least_expected) return 0;
   if (pools < 2) return 1;
   const boost::math::chi_squared distribution(pools - 1);
   return boost::math::cdf(boost::math::complement(distribution, statistic));

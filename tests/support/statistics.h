@@ -39,7 +39,8 @@ double mean_p_value(const Samples& samples, double expected);
 double welch_p_value(const Samples& a, const Samples& b);
 
 /// Pearson's chi-square goodness of fit. Cells are pooled in order of expectation until each pool expects at
-/// least five. Samples where nothing at all is expected give 0.
+/// least five. Five samples or more where nothing at all is expected give 0;
+/// fewer may be in a sliver of a cell that the integration of the expectation did not see.
 double chi_square_p_value(std::span<const double> observed, std::span<const double> expected);
 
 /// Significance of each of `count` tests such that the family has `family` (Sidak 1967).

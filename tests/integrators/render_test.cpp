@@ -1,0 +1,96 @@
+#include "integrators/render.h"
+
+#include "core/base/parallel.h"
+#include "scene/camera.h"
+#include "tests/support/test_scenes.h"
+
+namespace vernier::test {
+namespace {
+
+Scene scene() {
+  return SceneBuilder()
+      .add(box({-1, 0, -1}, {1, 2, 1}, true), plastic(0.4f))
+      .add(parallelogram({-0.3f, 1.9f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}), emitter(5))
+      .add(sphere({0, 0.5f, 0}, 0.4f, 8, 16), glass(0.2f))
+      .build();
+}
+
+CameraDescription camera_description() {
+  CameraDescription camera;
+  camera.yfov = 1.2f;
+  camera.to_world.origin = {0, 1, 0.95f};
+  return camera;
+}
+
+Image picture(const Scene& scene, const Integrator& integrator, const RenderOptions& options) {
+  const Camera camera(camera_description(), options.width, options.height);
+  const std::atomic<bool> stop = false;
+  return render(scene, camera, integrator, options, stop).film.image();
+}
+
+// The same bytes for any number of threads, for each integrator of the table.
+TEST(Render, SameForAnyNumberOfThreads) {
+  const Scene room = scene();
+  RenderOptions options;
+  options.width = 50;
+  options.height = 37;
+  options.spp = 6;
+  for (const IntegratorEntry& entry : integrators()) {
+    const auto integrator = entry.make({});
+    Image first;
+    for (const unsigned threads : {1u, 2u, 7u}) {
+      const ThreadLimit limit(threads);
+      const Image image = picture(room, *integrator, options);
+      if (first.empty())
+        first = image;
+      else
+        EXPECT_EQ(image.values, first.values) << entry.name << " with " << threads << " threads";
+    }
+  }
+}
+
+// A crop shows what the full picture shows there.
+TEST(Render, CropIsAPartOfTheWhole) {
+  const Scene room = scene();
+  const auto integrator = path({});
+  RenderOptions options;
+  options.width = 40;
+  options.height = 30;
+  options.spp = 4;
+  const Image whole = picture(room, *integrator, options);
+  options.crop = {11, 7, 18, 13};
+  const Image part = picture(room, *integrator, options);
+  ASSERT_EQ(part.width, 18);
+  ASSERT_EQ(part.height, 13);
+  for (int y = 0; y < 13; ++y)
+    for (int x = 0; x < 18; ++x) EXPECT_EQ(rgb_at(part, x, y), rgb_at(whole, x + 11, y + 7));
+}
+
+TEST(Render, SeedsDiffer) {
+  const Scene room = scene();
+  RenderOptions options;
+  options.width = options.height = 8;
+  options.spp = 2;
+  const Image a = picture(room, *path({}), options);
+  options.seed = 1;
+  EXPECT_NE(picture(room, *path({}), options).values, a.values);
+}
+
+TEST(Render, StopsWithAPicture) {
+  const Scene room = scene();
+  RenderOptions options;
+  options.width = options.height = 8;
+  options.spp = 0;
+  options.time_limit = 0.01;
+  const Camera camera(camera_description(), 8, 8);
+  std::atomic<bool> stop = false;
+  const RenderResult timed = render(room, camera, *path({}), options, stop);
+  EXPECT_EQ(timed.reason, StopReason::time);
+  EXPECT_GE(timed.samples, 64u);
+  EXPECT_EQ(timed.bad_samples, 0u);
+  stop = true;
+  EXPECT_EQ(render(room, camera, *path({}), options, stop).reason, StopReason::interrupted);
+}
+
+}  // namespace
+}  // namespace vernier::test

@@ -1,0 +1,112 @@
+#include "tests/support/test_scenes.h"
+
+// BSDF sampling, light sampling and both combined estimate the same light, with and without Russian roulette.
+
+namespace vernier::test {
+namespace {
+
+struct View {
+  const char* name;
+  Scene scene;
+  Ray ray;
+  int max_depth;
+  double resolution;  ///< relative bias that is to be found nine times in ten
+};
+
+MaterialDescription grey(MaterialDescription material, float reflectance) {
+  material.base_color = {reflectance, reflectance, reflectance, 1};
+  return material;
+}
+
+/// Direct light of a near lamp and a sky on glossy plastic: both techniques matter.
+View glossy() {
+  return {"glossy",
+          SceneBuilder()
+              .add(parallelogram({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), grey(plastic(0.4f), 0.5f))
+              .add(parallelogram({-1, 0.5f, -2}, {2, 0, 0}, {0, 1.5f, 0.5f}), emitter(2))
+              .environment([](const Vec3f& w) { return 0.3f + 2 * std::max(0.f, w.x * w.x * w.x); })
+              .build(),
+          ray_through({0.3f, 1, 2}, {0.2f, 0, 0}), 2, 2e-3};
+}
+
+/// A room with a large lamp and a rough metal block.
+View room() {
+  return {"room",
+          SceneBuilder()
+              .add(box({-1, 0, -1}, {1, 2, 1}, true), grey(plastic(0.6f), 0.6f))
+              .add(parallelogram({-0.6f, 1.8f, -0.6f}, {1.2f, 0, 0}, {0, 0, 1.2f}), emitter(3))
+              .add(box({-0.7f, 0.01f, -0.7f}, {-0.1f, 0.8f, -0.2f}), grey(metal(0.5f), 0.7f))
+              .build(),
+          ray_through({0.5f, 1, 0.9f}, {-0.4f, 0.5f, -0.2f}), 4, 2e-2};
+}
+
+/// Many lamps, chosen by the light tree.
+View lamps() {
+  SceneBuilder builder;
+  builder.add(parallelogram({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), grey(plastic(0.5f), 0.8f));
+  for (int i = 0; i < 5; ++i)
+    for (int j = 0; j < 5; ++j) {
+      const Vec3f at(float(i) - 2.5f, 0.5f + 0.2f * float((i * 3 + j * 2) % 4), float(j) - 2.5f);
+      builder.add(parallelogram(at, {0.8f, 0.1f * float(i - 2), 0}, {0, 0.1f * float(j - 2), 0.8f}),
+                  emitter(float(2 + (i + j) % 3)));
+    }
+  return {"lamps", builder.build(), ray_through({0.55f, 3, 0.45f}, {0.5f, 0, 0.4f}), 3, 1e-2};
+}
+
+/// A metal block under a sky with a bright side, and light that it sends to the floor.
+View sky() {
+  return {"sky",
+          SceneBuilder()
+              .add(parallelogram({-9, 0, -9}, {0, 0, 18}, {18, 0, 0}), grey(diffuse(1), 0.5f))
+              .add(box({-0.5f, 0, -0.5f}, {0.5f, 1, 0.5f}), grey(metal(0.6f), 0.9f))
+              .environment([](const Vec3f& w) { return 0.2f + 3 * std::max(0.f, w.x * w.x * w.x); })
+              .build(),
+          ray_through({2, 1.4f, 2}, {0.9f, 0, 0.1f}), 4, 1e-2};
+}
+
+struct Technique {
+  const char* name;
+  LightSampling sampling;
+  bool roulette;
+};
+constexpr Technique techniques[] = {{"mis", LightSampling::mis, true},
+                                    {"mis without roulette", LightSampling::mis, false},
+                                    {"light", LightSampling::light, true},
+                                    {"bsdf", LightSampling::bsdf, true}};
+
+// Welch's test on means of 32 independent stratified sets, family significance 0.001, with as many samples as
+// a bias of the view's resolution takes to be found nine times in ten.
+TEST(Techniques, Agree) {
+  for (const auto make_view : {glossy, room, lamps, sky}) {
+    const View view = make_view();
+    const auto run = [&](const Technique& technique, uint64_t seed, int samples) {
+      IntegratorOptions options;
+      options.max_depth = view.max_depth;
+      options.light_sampling = technique.sampling;
+      options.russian_roulette = technique.roulette;
+      return measure(view.scene, *path(options), view.ray, samples, 32, seed);
+    };
+    const double significance = sidak(1e-3, 12);
+    const auto resolved = [&](const Technique& technique, uint64_t seed, uint64_t factor) {
+      for (int samples = 1 << 8; samples <= 1 << 17; samples *= 2) {
+        const Samples measured = run(technique, seed, samples);
+        // Two such errors add to that of a difference.
+        const double error = std::numbers::sqrt2 * measured.standard_error();
+        if (detectable_bias(error, significance) <= view.resolution * measured.mean())
+          return factor == 1 ? measured : run(technique, seed, samples * int(factor));
+      }
+      ADD_FAILURE() << view.name << ": " << technique.name << " is too noisy to compare";
+      return run(technique, seed, 1);
+    };
+    for (const Technique& technique : {techniques[1], techniques[2], techniques[3]})
+      EXPECT_TRUE(confirmed(significance, 1,
+                            [&](uint64_t seed, uint64_t factor) {
+                              return welch_p_value(resolved(techniques[0], seed, factor),
+                                                   resolved(technique, seed + 100, factor));
+                            }))
+          << view.name << ": " << techniques[0].name << " against " << technique.name;
+  }
+}
+
+}  // namespace
+}  // namespace vernier::test
