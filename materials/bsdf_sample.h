@@ -4,9 +4,10 @@
 
 #include "core/math/vec.h"
 
-// Contract of every BSDF. Directions are unit vectors in the local frame with n = +z, both pointing away from the
-// surface; wo is on the side of n (wo.z > 0). wi.z > 0 is reflection, wi.z < 0 transmission. pdf is per solid angle
-// of wi. Values are for radiance carried from wi to wo; a transmitted one therefore carries the factor 1/eta^2.
+// Contract of every BSDF. Directions are unit vectors in the local frame with n = +z, both pointing away from
+// the surface; wo is on the side of n (wo.z > 0). wi.z > 0 is reflection, wi.z < 0 transmission. pdf is per
+// solid angle of wi. Values are for radiance carried from wi to wo; a transmitted one therefore carries the
+// factor 1/eta^2.
 //
 //   BsdfEval eval(wo, wi) const                                  both 0 for delta lobes
 //   std::optional<BsdfSample> sample(wo, u, v) const             empty: the sample carries nothing
@@ -24,17 +25,17 @@ enum class Lobe { diffuse, glossy, delta };
 
 struct BsdfSample {
   Vec3f wi;
-  Rgb weight;       ///< f |cos theta_i| / pdf
-  float pdf = 0;    ///< for a delta lobe: the probability of having chosen it
+  Rgb weight;     ///< f |cos theta_i| / pdf
+  float pdf = 0;  ///< for a delta lobe: the probability of having chosen it
   Lobe lobe = Lobe::diffuse;
-  float eta = 1;    ///< index of the side entered over that left; 1 when reflected or thin
+  float eta = 1;  ///< index of the side entered over that left; 1 when reflected or thin
 
   bool is_delta() const { return lobe == Lobe::delta; }
   bool is_transmitted() const { return wi.z < 0; }
 };
 
-/// The mirror and refraction directions of a surface, each with the fraction of light that goes that way when the
-/// lobe is taken for a perfectly sharp one; weight zero where there is none.
+/// The mirror and refraction directions of a surface, each with the fraction of light that goes that way when
+/// the lobe is taken for a perfectly sharp one; weight zero where there is none.
 struct SpecularRays {
   Rgb reflected{0, 0, 0};
   Rgb transmitted{0, 0, 0};

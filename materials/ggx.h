@@ -10,7 +10,8 @@ namespace vernier {
 struct Ggx {
   float ax = 1, ay = 1;  ///< widths; glTF: roughness squared
 
-  /// Below this width the lobe is narrower than a half-vector formed in float can resolve, and counts as a mirror.
+  /// Below this width the lobe is narrower than a half-vector formed in float can resolve, and counts as a
+  /// mirror.
   static constexpr float smooth_limit = 5e-4f;
   bool is_smooth() const { return std::max(ax, ay) < smooth_limit; }
   float mean_width() const { return ax == ay ? ax : std::sqrt(ax * ay); }
@@ -35,8 +36,8 @@ struct Ggx {
     return g1(wo) * std::max(0.f, dot(wo, m)) * d(m) / wo.z;
   }
 
-  /// A normal visible from wo, density visible_pdf (Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with
-  /// Spherical Caps", listing 3).
+  /// A normal visible from wo, density visible_pdf (Dupuy and Benyoub 2023, "Sampling Visible GGX Normals
+  /// with Spherical Caps", listing 3).
   Vec3f sample_visible(const Vec3f& wo, const Vec2f& u) const {
     const Vec3f stretched = normalize(Vec3f(wo.x * ax, wo.y * ay, wo.z));
     const float phi = 2 * pi * u.x;

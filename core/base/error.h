@@ -34,7 +34,7 @@ class Error : public std::runtime_error {
     if (!place.empty()) line += (line.empty() ? "" : ": ") + place;
     line += (line.empty() ? "" : ": ") + problem;
     // Libraries' own messages, quoted in `problem`, may have several lines.
-    line.erase(line.find_last_not_of("\n") + 1);
+    line.erase(line.find_last_not_of('\n') + 1);
     std::replace(line.begin(), line.end(), '\n', ' ');
     return line;
   }

@@ -78,8 +78,8 @@ constexpr SobolTables make_tables() {
 }
 const SobolTables tables = make_tables();
 
-/// Random permutation in which each bit depends on the seed and the lower bits only: on a reversed number, a nested
-/// uniform (Owen) scramble (Laine and Karras 2011; constants of Vegdahl 2021 as in pbrt-v4).
+/// Random permutation in which each bit depends on the seed and the lower bits only: on a reversed number, a
+/// nested uniform (Owen) scramble (Laine and Karras 2011; constants of Vegdahl 2021 as in pbrt-v4).
 template <typename Word>
 Word owen_hash(Word v, Word seed) {
   v ^= v * 0x3d20adeau;

@@ -65,7 +65,9 @@ TEST(Irradiance, Disk) {
   for (const double d : {0., 1.}) {
     const double r2 = radius * radius, s = h * h + d * d + r2;
     const double closed = 2 * (pi_d / 2) * (1 - (h * h + d * d - r2) / std::sqrt(s * s - 4 * r2 * d * d));
-    if (d == 0) ASSERT_NEAR(closed, 2 * pi_d * r2 / (r2 + h * h), 1e-12);
+    if (d == 0) {
+      ASSERT_NEAR(closed, 2 * pi_d * r2 / (r2 + h * h), 1e-12);
+    }
     expect_irradiance(scene, float(d), closed * std::sin(2 * pi_d / 256) / (2 * pi_d / 256));
   }
 }

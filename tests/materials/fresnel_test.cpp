@@ -92,7 +92,9 @@ TEST(Dielectric, SlabTransmits) {
       }
       const double f = reflectance(cosine, n);
       EXPECT_NEAR(seen, (1 - f) * (1 - f) * tau / (1 - f * f * tau * tau), 1e-6);
-      if (depth == 0 && cosine == 1) EXPECT_NEAR(seen, 2 * n / (n * n + 1), 1e-6);
+      if (depth == 0 && cosine == 1) {
+        EXPECT_NEAR(seen, 2 * n / (n * n + 1), 1e-6);
+      }
     }
 }
 
