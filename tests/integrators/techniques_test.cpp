@@ -64,6 +64,43 @@ View sky() {
           ray_through({2, 1.4f, 2}, {0.9f, 0, 0.1f}), 4, 1e-2};
 }
 
+/// A lamp within a block of coloured wax: light that is sampled through a surface is absorbed on its far
+/// side.
+View wax() {
+  MaterialDescription material = grey(plastic(0.5f), 0.8f);
+  material.diffuse_transmission = 0.8f;
+  material.thickness = 1;
+  material.attenuation_color = {0.4f, 0.5f, 1};
+  material.attenuation_distance = 0.3f;
+  return {"wax",
+          SceneBuilder()
+              .add(box({-0.5f, 0, -0.5f}, {0.5f, 1, 0.5f}), material)
+              .add(parallelogram({-0.2f, 0.3f, -0.2f}, {0.4f, 0, 0}, {0, 0.4f, 0}), emitter(4))
+              .environment([](const Vec3f& w) { return 0.2f + std::max(0.f, w.x * w.x * w.x); })
+              .build(),
+          ray_through({0.6f, 1.4f, 2}, {0.1f, 0.5f, 0.5f}), 4, 1e-2};
+}
+
+/// Brushed metal under a coat that shines by itself, and velvet.
+View layers() {
+  MaterialDescription floor = grey(metal(0.4f), 0.8f);
+  floor.anisotropy = 0.6f;
+  floor.clearcoat = 0.8f;
+  floor.clearcoat_roughness = 0.4f;
+  MaterialDescription velvet = grey(plastic(0.7f), 0.3f);
+  velvet.sheen_color = {0.9f, 0.9f, 0.9f};
+  velvet.sheen_roughness = 0.4f;
+  MaterialDescription lamp = emitter(3);
+  lamp.clearcoat = 1;
+  return {"layers",
+          SceneBuilder()
+              .add(parallelogram({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), floor)
+              .add(box({-0.9f, 0.01f, -0.6f}, {-0.2f, 0.8f, 0.1f}), velvet)
+              .add(parallelogram({-1, 0.5f, -2}, {2, 0, 0}, {0, 1.5f, 0.5f}), lamp)
+              .build(),
+          ray_through({0.3f, 1, 2}, {0.1f, 0, 0}), 4, 1e-2};
+}
+
 struct Technique {
   const char* name;
   LightSampling sampling;
@@ -77,7 +114,7 @@ constexpr Technique techniques[] = {{"mis", LightSampling::mis, true},
 // Welch's test on means of 32 independent stratified sets, family significance 0.001, with as many samples as
 // a bias of the view's resolution takes to be found nine times in ten.
 TEST(Techniques, Agree) {
-  for (const auto make_view : {glossy, room, lamps, sky}) {
+  for (const auto make_view : {glossy, room, lamps, sky, wax, layers}) {
     const View view = make_view();
     const auto run = [&](const Technique& technique, uint64_t seed, int samples) {
       IntegratorOptions options;
@@ -86,7 +123,7 @@ TEST(Techniques, Agree) {
       options.russian_roulette = technique.roulette;
       return measure(view.scene, *path(options), view.ray, samples, 32, seed);
     };
-    const double significance = sidak(1e-3, 12);
+    const double significance = sidak(1e-3, 18);
     const auto resolved = [&](const Technique& technique, uint64_t seed, uint64_t factor) {
       for (int samples = 1 << 8; samples <= 1 << 17; samples *= 2) {
         const Samples measured = run(technique, seed, samples);
