@@ -78,6 +78,33 @@ TEST(Lights, SampleAgreesWithEval) {
   }
 }
 
+// The same for lamps alone, which are chosen rarely where there is a sky; a coat's reflectance, and so the
+// emission below it, depends on the angle.
+TEST(Lights, SampleAgreesWithEvalOfCoatedLamps) {
+  MaterialDescription coated = emitter(3);
+  coated.clearcoat = 1;
+  const Scene scene = SceneBuilder()
+                          .add(parallelogram({-20, 0, -20}, {0, 0, 40}, {40, 0, 0}), diffuse(0.5f))
+                          .add(parallelogram({-1, 1, -1}, {1, 0, 0}, {0, 0.2f, 1}), coated)
+                          .add(parallelogram({0.5f, 0.8f, 0}, {1, 0.3f, 0}, {0, 0, 1}), emitter(2))
+                          .build();
+  Random random(3);
+  int met = 0;
+  for (const SurfacePoint& from : floor_points(scene, 400)) {
+    const float u = random.next1();
+    const auto sample = scene.sample_light(from, u, random.next2());
+    if (!sample || sample->wi.y <= 0.02f || scene.occluded(sample->shadow)) continue;
+    const Ray ray = from.spawn(sample->wi);
+    const auto hit = scene.intersect(ray);
+    ASSERT_TRUE(hit);
+    const LightEval eval = scene.emitted(&from, ray, &*hit);
+    ++met;
+    EXPECT_NEAR(eval.pdf, sample->pdf, 2e-3f * sample->pdf);
+    EXPECT_NEAR(eval.radiance.x, sample->radiance.x, 1e-3f * sample->radiance.x);
+  }
+  EXPECT_GT(met, 100);
+}
+
 // Integral over all directions of the density with which light sampling picks them: one, less the probability
 // of lights that no ray meets, and of samples that come to nothing because a lamp's dark side faces the point
 // or another lamp hides it.
