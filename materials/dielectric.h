@@ -139,7 +139,7 @@ struct Dielectric {
 
   /// Fraction of light that single_scattering() returns when it absorbs none.
   float single_albedo(const Vec3f& wo) const {
-    if (thin) return 1 - ggx_albedo(wo.z, ggx.mean_width()).missing;
+    if (thin) return 1 - ggx_albedo(wo, ggx).missing;
     return energy->albedo(wo.z, ggx.mean_width(), {max_component(fresnel.f0), fresnel.f90});
   }
 

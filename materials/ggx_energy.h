@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/math/vec.h"
+#include "materials/ggx.h"
 
 namespace vernier {
 
@@ -21,5 +21,9 @@ GgxAlbedo ggx_albedo(float cos_theta, float alpha);
 /// Cosine-weighted mean of ggx_albedo() over the hemisphere: of what the table says, so that a lobe built
 /// from both loses nothing to interpolation.
 GgxAlbedo ggx_average_albedo(float alpha);
+
+/// The same for lobes that may be anisotropic, toward w.
+GgxAlbedo ggx_albedo(const Vec3f& w, const Ggx& ggx);
+GgxAlbedo ggx_average_albedo(const Ggx& ggx);
 
 }  // namespace vernier

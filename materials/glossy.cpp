@@ -4,7 +4,7 @@ namespace vernier {
 namespace {
 
 GgxAlbedo average(const Ggx& ggx) {
-  return ggx.is_smooth() ? GgxAlbedo{0, 1 / 21.f} : ggx_average_albedo(ggx.mean_width());
+  return ggx.is_smooth() ? GgxAlbedo{0, 1 / 21.f} : ggx_average_albedo(ggx);
 }
 
 Rgb mix(float t, const Rgb& a, const Rgb& b) { return a * (1 - t) + b * t; }

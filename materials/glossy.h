@@ -79,7 +79,7 @@ class Glossy {
   };
 
   GgxAlbedo ggx_toward(const Vec3f& w) const {
-    return ggx_.is_smooth() ? GgxAlbedo{0, schlick_weight(w.z)} : ggx_albedo(w.z, ggx_.mean_width());
+    return ggx_.is_smooth() ? GgxAlbedo{0, schlick_weight(w.z)} : ggx_albedo(w, ggx_);
   }
 
   View seen_from(const Vec3f& wo) const {

@@ -113,6 +113,26 @@ TEST(Irradiance, PunctualLights) {
   expect_delta_irradiance(lit(), float(x), 7 * 2 / std::sqrt(5.));
 }
 
+// Of several punctual lights the path integrator samples one at a time; Whitted's sums them.
+TEST(Irradiance, SeveralPunctualLights) {
+  SceneBuilder builder = floor_scene();
+  double expected = 0;
+  for (const auto& [x, intensity] : {std::pair(-1.f, 2.f), std::pair(0.5f, 7.f), std::pair(2.f, 4.f)}) {
+    PunctualLightDescription light;
+    light.intensity = intensity;
+    light.to_world.origin = {x, 2, 0};
+    builder.add(light);
+    expected += intensity * 2 / std::pow(4 + double(x) * x, 1.5);
+  }
+  const Scene scene = builder.build();
+  IntegratorOptions options;
+  options.max_depth = 2;
+  options.ambient = 0;
+  EXPECT_TRUE(sees(scene, *path(options), sight(0), expected / pi_d, 1e-3));
+  EXPECT_NEAR(measure(scene, *make_integrator("whitted", options), sight(0), 1, 1).mean(), expected / pi_d,
+              1e-5);
+}
+
 // Sky a + b cos: E = pi a + 2 pi b / 3.
 TEST(Irradiance, Environment) {
   const Scene scene =

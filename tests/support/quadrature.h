@@ -65,7 +65,8 @@ Integrals<N> integrate_square(const Function& f, double tolerance, int max_evalu
     }
   };
   for (int i = 0; i < start * start; ++i) {
-    const double size = 1.0 / start, x = (i % start) * size, y = (i / start) * size;
+    const int row = i / start;
+    const double size = 1.0 / start, x = (i % start) * size, y = row * size;
     quarter(x, y, size, cell_value(x, y, size));
   }
   while (total.error > tolerance && evaluations < max_evaluations) {
