@@ -18,6 +18,7 @@ constexpr void (*subcommands[])(Program&) = {
     register_render,
     register_info,
     register_compare,
+    register_bench,
 };
 
 ExitCode exit_code(ErrorKind kind) {
@@ -55,12 +56,18 @@ std::vector<std::string> subcommand_names(const CLI::App& app) {
   return names;
 }
 
+/// "vernier bench rays"
+std::string full_name(const CLI::App& command) {
+  std::string name = command.get_name();
+  for (const CLI::App* up = command.get_parent(); up; up = up->get_parent())
+    name.insert(0, up->get_name() + " ");
+  return name;
+}
+
 /// What is wrong with the words that nothing on the command line takes.
 std::string describe_extras(const CLI::App& app, const std::vector<std::string>& extras) {
   const CLI::App& command = innermost(app);
-  std::string prefix = command.get_name();
-  for (const CLI::App* up = command.get_parent(); up; up = up->get_parent())
-    prefix.insert(0, up->get_name() + " ");
+  const std::string prefix = full_name(command);
   for (const auto& word : extras) {
     if (word.size() < 2 || word[0] != '-') continue;
     const std::string flag = word.substr(0, word.find('='));
@@ -82,11 +89,12 @@ ExitCode parse_failed(const CLI::App& app, const CLI::ParseError& error) {
   std::vector<std::string> extras = app.remaining(true);
   const bool flag =
       std::any_of(extras.begin(), extras.end(), [](const auto& w) { return w.size() > 1 && w[0] == '-'; });
-  const bool no_command = app.get_subcommands().empty();
+  const CLI::App& command = innermost(app);
+  const bool no_command = command.get_require_subcommand_min() > 0;
   if (flag || (!extras.empty() && (no_command || dynamic_cast<const CLI::ExtrasError*>(&error))))
     print_error(describe_extras(app, extras));
   else if (no_command)
-    print_error("which command? See vernier --help");
+    print_error(fmt::format("which command? See {} --help", full_name(command)));
   else
     print_error(error.what());
   return ExitCode::usage;

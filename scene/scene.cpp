@@ -40,7 +40,12 @@ Scene::Scene(SceneDescription description, const Options& options)
     : geometry_(std::move(description.meshes), description.instances),
       textures_(std::move(description.textures)) {
   compile_materials(description.materials);
-  build_accelerator(options.accelerator);
+  if (std::any_of(materials_.begin(), materials_.end(), [](const Material& m) { return !m.is_opaque(); }))
+    coverage_.emplace(geometry_, materials_, material_of_instance_);
+  const auto& entry = options.accelerator.empty()
+                          ? accelerators().front()
+                          : find_by_name(accelerators(), "accelerator", options.accelerator);
+  accelerator_ = entry.build(accelerated_geometry());
   collect_lights(description);
 }
 
@@ -55,17 +60,12 @@ void Scene::compile_materials(const std::vector<MaterialDescription>& descriptio
   }
 }
 
-void Scene::build_accelerator(const std::string& name) {
+Geometry Scene::accelerated_geometry() const {
   Geometry view = geometry_.view();
   for (size_t i = 0; i < view.instances.size(); ++i)
     view.instances[i].filtered = !materials_[material_of_instance_[i]].is_opaque();
-  if (std::any_of(view.instances.begin(), view.instances.end(), [](const auto& i) { return i.filtered; })) {
-    coverage_.emplace(geometry_, materials_, material_of_instance_);
-    view.filter = &*coverage_;
-  }
-  const auto& entry =
-      name.empty() ? accelerators().front() : find_by_name(accelerators(), "accelerator", name);
-  accelerator_ = entry.build(view);
+  if (coverage_) view.filter = &*coverage_;
+  return view;
 }
 
 void Scene::collect_lights(const SceneDescription& description) {

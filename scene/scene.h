@@ -54,13 +54,14 @@ class Scene {
   const LightSet& lights() const { return lights_; }
   const SceneGeometry& geometry() const { return geometry_; }
   const Accelerator& accelerator() const { return *accelerator_; }
+  /// What the accelerator was built from, for building others beside it; valid as long as the scene.
+  Geometry accelerated_geometry() const;
   const Bounds& bounds() const { return geometry_.bounds(); }
   const std::vector<Notice>& notices() const { return notices_; }
 
  private:
   LightReceiver receiver(const SurfacePoint& point) const;
   void compile_materials(const std::vector<MaterialDescription>& descriptions);
-  void build_accelerator(const std::string& name);
   void collect_lights(const SceneDescription& description);
 
   SceneGeometry geometry_;

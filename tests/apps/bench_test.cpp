@@ -1,0 +1,61 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/process.h"
+
+namespace vernier {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+const std::string cornell_box = VERNIER_SOURCE_DIR "/tests/scenes/cornell_box.gltf";
+constexpr int done = 0, usage = 2, input = 3;
+
+TEST(BenchRays, TimesAcceleratorsBesideEmbree) {
+  test::TemporaryFolder folder;
+  const std::string file = folder.file("rays.json");
+  const auto result = test::run_vernier({"bench", "rays", cornell_box, "--accelerator", "bvh,octree",
+                                         "--paths", "500", "--repetitions", "2", "--json", file});
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("bvh"));
+  EXPECT_THAT(result.out, testing::Not(HasSubstr("brute_force")));
+  const auto report = json::parse(test::read_file(file));
+  ASSERT_EQ(report["accelerators"].size(), 3u);
+  EXPECT_GE(report["rays"]["bounce"], report["rays"]["primary"]);
+  for (const auto& accelerator : report["accelerators"]) {
+    EXPECT_GT(accelerator["build_seconds"], 0);
+    for (const std::string threads : {"one_thread", "all_threads"})
+      for (const std::string kind : {"primary", "bounce", "shadow", "mixed"}) {
+        const auto& rate = accelerator["rays_per_second"][threads][kind];
+        EXPECT_GT(rate["median"], 0) << threads << kind;
+        if (accelerator["name"] == "embree") {
+          EXPECT_EQ(rate["ratio_to_embree"], 1);
+        }
+      }
+    EXPECT_EQ(accelerator["name"] != "embree", accelerator.contains("per_ray")) << accelerator["name"];
+  }
+}
+
+TEST(Bench, MisuseIsOneLineAndNothingIsWritten) {
+  test::TemporaryFolder folder;
+  const auto expect_error = [](const std::vector<std::string>& arguments, int code, const std::string& part) {
+    const auto result = test::run_vernier(arguments);
+    EXPECT_EQ(result.exit_code, code);
+    ASSERT_EQ(result.err_lines().size(), 1u) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(part));
+  };
+  expect_error({"bench"}, usage, "vernier bench --help");
+  expect_error({"bench", "ray", cornell_box}, usage, "rays");
+  expect_error({"bench", "rays"}, usage, "which scene?");
+  expect_error({"bench", "rays", cornell_box, "--accelerator", "bhv"}, usage, "bvh");
+  expect_error({"bench", "rays", folder.file("none.glb"), "--json", folder.file("x.json")}, input,
+               "none.glb");
+  expect_error({"bench", "rays", cornell_box, "--json", folder.file("no/x.json")}, input, "no/x.json");
+  EXPECT_THAT(folder.names(), testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace vernier
