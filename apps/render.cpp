@@ -9,6 +9,7 @@
 #include "apps/progress.h"
 #include "apps/render_options.h"
 #include "apps/render_report.h"
+#include "apps/report_page.h"
 #include "apps/scene_summary.h"
 #include "apps/stop_signals.h"
 #include "core/base/parallel.h"
@@ -109,16 +110,24 @@ ExitCode run_render(const RenderFlags& flags, const std::string& command_line) {
 
   const StopSignals signals;
   ProgressReporter progress(request.progress, report.options);
+  std::optional<Profiler> profiler;
+  if (!flags.report.empty()) profiler.emplace();
   const RenderResult result = render(scene, camera, *request.integrator, report.options, signals.stop(),
                                      [&](const RenderProgress& state) { progress.update(state); });
+  if (profiler) {
+    profiler->stop();
+    report.profile = profiler->parts();
+    report.profile_samples = profiler->samples();
+  }
   progress.finish();
   warn_of_bad_samples(result, flags, log);
 
   watch.lap();
   write_pictures(request, result.film.image(), image_metadata(report, flags, result));
   report.output_seconds = watch.lap();
-  if (!flags.stats.empty())
-    write_text_file(flags.stats, to_text(stats_json(report, flags, result, log)) + "\n");
+  const auto stats = stats_json(report, flags, result, log);
+  if (!flags.stats.empty()) write_text_file(flags.stats, to_text(stats) + "\n");
+  if (!flags.report.empty()) write_text_file(flags.report, report_page(stats, result.film, request.display));
   if (!flags.quiet) fmt::print("{}\n", summary_line(report, flags, result));
   return result.reason == StopReason::interrupted ? ExitCode::stopped : ExitCode::done;
 }

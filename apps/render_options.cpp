@@ -110,6 +110,9 @@ void add_output_flags(CLI::App& command, RenderFlags& flags) {
   command.add_option("--stats", flags.stats, "write what was measured as JSON (docs/stats.md)")
       ->type_name("FILE");
   command
+      .add_option("--report", flags.report, "write a page with the picture, its error and what was measured")
+      ->type_name("FILE.html");
+  command
       .add_option("--progress", flags.progress, "bar, lines, json or none (bar on a terminal, else lines)")
       ->type_name("KIND")
       ->capture_default_str();
@@ -177,8 +180,8 @@ bool equal_ignoring_case(std::string_view a, std::string_view b) {
 /// to the display unchanged where the config has a raw view.
 DisplayOptions choose_display(const RenderFlags& flags) {
   DisplayOptions display = flags.display;
-  const bool asked = !display.view.empty() || !display.config.empty();
-  if (!asked && std::none_of(flags.outputs.begin(), flags.outputs.end(), is_display_file)) return display;
+  const bool needed = !display.view.empty() || !display.config.empty() || !flags.report.empty();
+  if (!needed && std::none_of(flags.outputs.begin(), flags.outputs.end(), is_display_file)) return display;
   const std::vector<std::string> views = display_views(display);
   if (!display.view.empty()) {
     if (std::find(views.begin(), views.end(), display.view) == views.end())
@@ -267,7 +270,8 @@ RenderRequest check_render_flags(const RenderFlags& flags) {
   request.progress = parse_progress(flags);
   request.display = choose_display(flags);
   for (const auto& path : flags.outputs) check_writable_image(path);
-  if (!flags.stats.empty()) check_writable_text_file(flags.stats);
+  for (const auto& path : {flags.stats, flags.report})
+    if (!path.empty()) check_writable_text_file(path);
   request.environment = read_environment(flags);
   return request;
 }

@@ -41,7 +41,7 @@ struct RenderFlags {
 
   DisplayOptions display;
   std::string progress = "auto";
-  std::string stats;
+  std::string stats, report;
   bool quiet = false, verbose = false;
 };
 

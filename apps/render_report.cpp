@@ -94,6 +94,13 @@ Json rays_json(const RenderResult& result) {
           {"samples_per_second", rate(result.samples, result.seconds)}};
 }
 
+Json profile_json(const RenderReport& report) {
+  if (report.profile.empty()) return nullptr;
+  Json shares = Json::object();
+  for (const ProfilePart& part : report.profile) shares[part.name] = part.share;
+  return {{"samples", report.profile_samples}, {"shares", shares}};
+}
+
 Json bad_samples_json(const RenderResult& result) {
   Json examples = Json::array();
   for (const BadSample& sample : result.bad_sample_examples)
@@ -142,6 +149,7 @@ Json stats_json(const RenderReport& report, const RenderFlags& flags, const Rend
             {"output", report.output_seconds},
             {"cpu", cpu_seconds()}}},
           {"rays", rays_json(result)},
+          {"profile", profile_json(report)},
           {"error", error_json(result.error)},
           {"convergence", convergence_json(result)},
           {"accelerator",

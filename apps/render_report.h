@@ -4,6 +4,7 @@
 #include <string>
 
 #include "apps/notice_log.h"
+#include "apps/profile.h"
 #include "apps/render_options.h"
 #include "apps/scene_summary.h"
 #include "core/image/image_io.h"
@@ -20,9 +21,11 @@ struct RenderReport {
   AcceleratorStats accelerator_stats;
   RenderOptions options;
   unsigned threads = 0;
-  double load_seconds = 0;    ///< reading the scene and the environment
-  double build_seconds = 0;   ///< from the description to a scene that answers rays
-  double output_seconds = 0;  ///< display transform, encoding, writing
+  double load_seconds = 0;           ///< reading the scene and the environment
+  double build_seconds = 0;          ///< from the description to a scene that answers rays
+  double output_seconds = 0;         ///< display transform, encoding, writing
+  std::vector<ProfilePart> profile;  ///< empty: not sampled
+  size_t profile_samples = 0;
 };
 
 /// Image header entries that say how the picture came about.

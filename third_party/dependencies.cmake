@@ -38,6 +38,9 @@ if(NOT embree_FOUND)
 endif()
 message(STATUS "Embree ${embree_VERSION}")
 
+# Goes into HTML pages.
+find_file(CHART_JS_FILE NAMES chart.min.js chart.umd.js PATHS /usr/share/javascript/chart.js REQUIRED)
+
 if(VERNIER_TESTS)
   find_package(GTest REQUIRED)
 endif()

@@ -63,6 +63,9 @@ void write_exr(const std::string& path, const Image& image, const std::vector<st
 /// PNG keeps each metadata entry as a text chunk, JPEG all of them as lines of its ImageDescription.
 void write_image8(const std::string& path, const Image8& image, const Metadata& metadata);
 
+/// The bytes of a PNG file with these display-encoded values.
+std::vector<unsigned char> encode_png(const Image8& image);
+
 /// Throws Error(output) unless a .exr, .png, .jpg or .jpeg file can be written in that folder; called before
 /// rendering so that hours are not lost to a misspelt folder.
 void check_writable_image(const std::string& path);

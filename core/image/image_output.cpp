@@ -70,6 +70,34 @@ void write_image(const std::string& path, const std::string& target, const char*
     throw output_error(path, fmt::format("cannot write image: {}", output->geterror()));
 }
 
+void set_metadata(OIIO::ImageSpec& spec, const Metadata& metadata, bool as_lines) {
+  std::string lines;
+  for (const auto& [name, value] : metadata) {
+    spec.attribute(name, value);
+    lines += fmt::format("{}: {}\n", name, value);
+  }
+  if (as_lines && !lines.empty()) spec.attribute("ImageDescription", lines);
+}
+
+// Encoded in memory first: on a full disk libpng's writer says nothing and libjpeg's ends the process.
+std::vector<unsigned char> encode_image8(const std::string& path, const char* format, const Image8& image,
+                                         const Metadata& metadata) {
+  if (image.empty()) throw output_error(path, "image has no pixels");
+  OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeUInt8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  const bool jpeg = std::strcmp(format, "jpeg") == 0;
+  if (jpeg) {
+    spec.attribute("compression", "jpeg:95");
+    spec.attribute("jpeg:subsampling", "4:4:4");
+  }
+  set_metadata(spec, metadata, jpeg);
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  write_image(path, fmt::format("memory.{}", format), format, spec, image.values.data(), &memory);
+  return bytes;
+}
+
 void write_bytes(const std::string& path, const std::string& target,
                  const std::vector<unsigned char>& bytes) {
   std::FILE* file = std::fopen(target.c_str(), "wb");
@@ -89,15 +117,6 @@ const char* format_of(const std::string& path) {
   if (extension == ".png") return "png";
   if (extension == ".jpg" || extension == ".jpeg") return "jpeg";
   return nullptr;
-}
-
-void set_metadata(OIIO::ImageSpec& spec, const Metadata& metadata, bool as_lines) {
-  std::string lines;
-  for (const auto& [name, value] : metadata) {
-    spec.attribute(name, value);
-    lines += name + ": " + value + "\n";
-  }
-  if (as_lines && !lines.empty()) spec.attribute("ImageDescription", lines);
 }
 
 }  // namespace
@@ -124,23 +143,14 @@ void write_image8(const std::string& path, const Image8& image, const Metadata& 
   const char* format = format_of(path);
   if (!format || std::strcmp(format, "openexr") == 0)
     throw output_error(path, "cannot write 8-bit values to this kind of file; use .png or .jpg");
-  if (image.empty()) throw output_error(path, "image has no pixels");
-  OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeUInt8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  spec.attribute("oiio:UnassociatedAlpha", 1);
-  const bool jpeg = std::strcmp(format, "jpeg") == 0;
-  if (jpeg) {
-    spec.attribute("compression", "jpeg:95");
-    spec.attribute("jpeg:subsampling", "4:4:4");
-  }
-  set_metadata(spec, metadata, jpeg);
-  // Encoded in memory first: on a full disk libpng's writer says nothing and libjpeg's ends the process.
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  write_image(path, fmt::format("memory.{}", format), format, spec, image.values.data(), &memory);
+  const std::vector<unsigned char> bytes = encode_image8(path, format, image, metadata);
   TemporaryFile file(path);
   write_bytes(path, file.path(), bytes);
   file.give_final_name();
+}
+
+std::vector<unsigned char> encode_png(const Image8& image) {
+  return encode_image8("picture", "png", image, {});
 }
 
 void check_writable_image(const std::string& path) {
