@@ -4,6 +4,7 @@
 
 #include "apps/commands.h"
 #include "apps/comparison.h"
+#include "apps/flags.h"
 #include "apps/messages.h"
 #include "core/base/error.h"
 #include "core/image/colormap.h"
@@ -18,15 +19,17 @@ struct CompareFlags {
   std::string picture, reference, heatmap;
   std::vector<std::string> fail;
   bool json = false, no_flip = false;
-  double bias_level = 0.01;
+  ComparisonOptions options;
 };
 
 Json to_json(const BiasTest& bias) {
   return {{"level", bias.level},
+          {"block", bias.block},
           {"different", bias.different()},
-          {"pixels_tested", bias.tested},
+          {"blocks_tested", bias.tested},
+          {"blocks_differing", bias.differing},
           {"pixels_not_finite", bias.not_finite},
-          {"pixels_differing", bias.differing},
+          {"pixels_unreliable", bias.unreliable},
           {"smallest_p", bias.smallest_p},
           {"smallest_p_at", {bias.worst_x, bias.worst_y}},
           {"mean_difference", bias.mean_difference},
@@ -72,8 +75,9 @@ std::string note(const Metric& metric, const Comparison& comparison) {
                        comparison.flip->exposures, comparison.flip->start_exposure,
                        comparison.flip->stop_exposure);
   if (metric.name == "differing")
-    return fmt::format(", of {}, at false discovery rate {:.6g}", comparison.bias->tested,
-                       comparison.bias->level);
+    return fmt::format(", of {} of {}x{} pixels, {} not to be trusted left out, false discovery rate {:.6g}",
+                       comparison.bias->tested, comparison.bias->block, comparison.bias->block,
+                       comparison.bias->unreliable, comparison.bias->level);
   return {};
 }
 
@@ -105,14 +109,15 @@ ExitCode run_compare(const CompareFlags& flags) {
                 "which pictures? Give a picture and its reference; see vernier compare --help");
   if (flags.no_flip && !flags.heatmap.empty())
     throw Error(ErrorKind::usage, "--heatmap shows FLIP, which --no-flip leaves out; drop one of the two");
-  if (!(flags.bias_level > 0 && flags.bias_level < 1))
+  if (!(flags.options.bias_level > 0 && flags.options.bias_level < 1))
     throw Error(ErrorKind::usage, {}, "--bias-level", "expected a number between 0 and 1");
   std::vector<Limit> limits;
   for (const auto& text : flags.fail) limits.emplace_back(text);
   if (!flags.heatmap.empty()) check_writable_image(flags.heatmap);
 
-  const Comparison comparison =
-      compare_files(flags.picture, flags.reference, {!flags.no_flip, flags.bias_level});
+  ComparisonOptions options = flags.options;
+  options.flip = !flags.no_flip;
+  const Comparison comparison = compare_files(flags.picture, flags.reference, options);
   std::vector<std::string> failed;
   for (const Limit& limit : limits)
     if (auto complaint = limit.complaint(comparison); !complaint.empty())
@@ -154,9 +159,15 @@ void register_compare(Program& program) {
   command->add_flag("--no-flip", flags->no_flip, "leave out FLIP, which takes longest");
   command
       ->add_option(
-          "--bias-level", flags->bias_level,
+          "--bias-level", flags->options.bias_level,
           "part of false findings allowed to the bias test, made when both files have an error layer")
       ->type_name("PART")
+      ->capture_default_str();
+  command
+      ->add_option("--bias-block", flags->options.bias_block,
+                   "pixels a side of the squares that the bias test compares; 1 needs exact error layers")
+      ->check(whole_number(1, 65536))
+      ->type_name("N")
       ->capture_default_str();
   command->callback([&program, flags] { program.run = [flags] { return run_compare(*flags); }; });
 }

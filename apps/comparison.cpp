@@ -23,22 +23,36 @@ constexpr Metric table[] = {
      [](const Comparison& c) { return std::optional(double(c.difference.not_finite)); }},
     {"flip", "mean perceived difference, 0 to 1",
      [](const Comparison& c) { return c.flip ? std::optional(c.flip->mean) : std::nullopt; }},
-    {"differing", "pixels whose expectations differ, by both error layers",
+    {"differing", "blocks of pixels whose expectations differ, by both error layers",
      [](const Comparison& c) { return c.bias ? std::optional(double(c.bias->differing)) : std::nullopt; }},
     {"mean_p", "probability of means this far apart by chance, by both error layers",
      [](const Comparison& c) { return c.bias ? std::optional(c.bias->mean_p) : std::nullopt; }},
 };
 
-/// Degrees of freedom of a file's error layer: its header may say from how many groups it was estimated.
+/// Degrees of freedom of a file's error layer: a pixel's samples less the means of the two halves.
 double error_degrees(const Metadata& metadata) {
-  const auto groups = metadata.find("vernier:error_groups");
+  const auto samples = metadata.find("vernier:samplesPerPixel");
   double count = 0;
-  if (groups != metadata.end()) {
-    const std::string& text = groups->second;
+  if (samples != metadata.end()) {
+    const std::string& text = samples->second;
     std::from_chars(text.data(), text.data() + text.size(), count);
   }
-  return count >= 2 ? count - 1 : std::numeric_limits<double>::infinity();
+  return count > 2 ? std::max(1.0, count - 2) : std::numeric_limits<double>::infinity();
 }
+
+/// What the bias test asks of a file.
+struct MeasuredFile {
+  const Image& mean;
+  std::optional<Image> error, unreliable;
+  double degrees;
+
+  MeasuredFile(const LayeredImage& file, const Image& rgb)
+      : mean(rgb),
+        error(file.layer("error")),
+        unreliable(file.single("error.unreliable")),
+        degrees(error_degrees(file.metadata)) {}
+  MeasuredImage image() const { return {mean, *error, degrees, unreliable ? &*unreliable : nullptr}; }
+};
 
 }  // namespace
 
@@ -59,10 +73,9 @@ Comparison compare_files(const std::string& picture, const std::string& referenc
   result.difference = difference(x_rgb, r_rgb);
   result.peak = r.linear ? result.difference.reference_largest : 1;
   if (options.flip) result.flip = r.linear ? hdr_flip(x_rgb, r_rgb) : flip(x_rgb, r_rgb);
-  const auto x_error = x.layer("error"), r_error = r.layer("error");
-  if (x_error && r_error)
-    result.bias = test_bias({x_rgb, *x_error, error_degrees(x.metadata)},
-                            {r_rgb, *r_error, error_degrees(r.metadata)}, options.bias_level);
+  const MeasuredFile x_measured(x, x_rgb), r_measured(r, r_rgb);
+  if (x_measured.error && r_measured.error)
+    result.bias = test_bias(x_measured.image(), r_measured.image(), options.bias_level, options.bias_block);
   return result;
 }
 

@@ -16,6 +16,7 @@ namespace vernier::apps {
 struct ComparisonOptions {
   bool flip = true;          ///< the costliest figure
   double bias_level = 0.01;  ///< expected part of false findings
+  int bias_block = 8;        ///< pixels a side of the squares whose means are tested
 };
 
 /// What was measured of a picture x and its reference r.

@@ -57,15 +57,16 @@ std::string to_text(const nlohmann::ordered_json& json) {
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-void write_pictures(const RenderRequest& request, const Image& picture, const Metadata& metadata) {
+/// `picture` has the colour first and then the layers asked for, which only .exr files get.
+void write_pictures(const RenderRequest& request, const LayeredImage& picture, const Metadata& metadata) {
   for (const auto& path : request.flags.outputs) {
     if (is_display_file(path)) {
       Metadata with_view = metadata;
       with_view["vernier:exposure"] = fmt::format("{}", request.display.exposure);
       with_view["vernier:view"] = request.display.view;
-      write_image8(path, to_display(picture, request.display), with_view);
+      write_image8(path, to_display(picture.rgb(), request.display), with_view);
     } else {
-      write_exr(path, picture, {"R", "G", "B"}, metadata);
+      write_exr(path, picture.image, picture.channel_names, metadata);
     }
   }
 }
@@ -104,7 +105,7 @@ ExitCode run_render(const RenderFlags& flags, const std::string& command_line) {
   const CameraDescription view = chosen ? *chosen : fit_camera(scene.bounds(), report.options, log);
   report.camera = view.name;
   fill_in_size(report.options, view);
-  check_picture_size(report.options);
+  check_picture_size(report.options, request.layers);
   const Camera camera(view, report.options.width, report.options.height);
   if (flags.verbose) fmt::print(stderr, "{}", scene_lines(report));
 
@@ -123,7 +124,8 @@ ExitCode run_render(const RenderFlags& flags, const std::string& command_line) {
   warn_of_bad_samples(result, flags, log);
 
   watch.lap();
-  write_pictures(request, result.film.image(), image_metadata(report, flags, result));
+  write_pictures(request, with_layers(result.film, request.layers, scene, camera, report.options),
+                 image_metadata(report, flags, result));
   report.output_seconds = watch.lap();
   const auto stats = stats_json(report, flags, result, log);
   if (!flags.stats.empty()) write_text_file(flags.stats, to_text(stats) + "\n");

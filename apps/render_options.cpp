@@ -1,6 +1,7 @@
 #include "apps/render_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,7 +21,11 @@ namespace vernier::apps {
 namespace {
 
 /// Of the film (seven numbers of eight bytes a half), and the picture made from it.
-constexpr double film_bytes_per_pixel = Film::halves * 7 * sizeof(double) + 3 * sizeof(float);
+double bytes_per_pixel(std::span<const Layer> layers) {
+  int channels = 3;
+  for (const Layer& layer : layers) channels += layer.channel_count();
+  return Film::halves * 7 * sizeof(double) + double(channels) * sizeof(float);
+}
 
 /// A negative number would be taken for a large one.
 void parse_seed(const std::string& text) {
@@ -100,6 +105,10 @@ void add_integrator_flags(CLI::App& command, RenderFlags& flags) {
 
 void add_output_flags(CLI::App& command, RenderFlags& flags) {
   command.option_defaults()->group("Output");
+  command
+      .add_option("--aov,--layers", flags.layers,
+                  "layers of the .exr beside its colour: error,albedo,...; 'help' lists them, 'all' is all")
+      ->type_name("LIST");
   command.add_option("--exposure", flags.display.exposure, "stops, for PNG and JPEG")
       ->check(real_number(-100, 100))
       ->type_name("EV");
@@ -123,6 +132,22 @@ void add_output_flags(CLI::App& command, RenderFlags& flags) {
 template <typename Table>
 void print_table(const Table& table) {
   for (const auto& entry : table) fmt::print("{:<12} {}\n", entry.name, entry.description);
+}
+
+/// The table as --aov takes it: name, channels in the file, meaning.
+void print_layers() {
+  for (const Layer& layer : layers())
+    fmt::print("{:<10} {}\n{:10} channels {}\n", layer.name, layer.description, "",
+               fmt::join(layer.channels.begin(), layer.channels.begin() + layer.channel_count(), ", "));
+}
+
+/// Only OpenEXR holds more than a picture's colour.
+std::vector<Layer> choose_layers(const RenderFlags& flags) {
+  if (flags.layers.empty()) return {};
+  if (std::all_of(flags.outputs.begin(), flags.outputs.end(), is_display_file))
+    throw Error(ErrorKind::usage, {}, "--aov",
+                "only an .exr can hold layers; add -o FILE.exr, which may be given beside other outputs");
+  return find_layers(flags.layers);
 }
 
 ProgressMode parse_progress(const RenderFlags& flags) {
@@ -222,7 +247,7 @@ void add_render_flags(CLI::App& command, RenderFlags& flags) {
   add_output_flags(command, flags);
 }
 
-void check_picture_size(const RenderOptions& options) {
+void check_picture_size(const RenderOptions& options, std::span<const Layer> layers) {
   const Crop& crop = options.crop;
   if (crop.width > 0 && (crop.width > options.width - crop.x || crop.height > options.height - crop.y))
     throw Error(ErrorKind::usage,
@@ -230,7 +255,7 @@ void check_picture_size(const RenderOptions& options) {
                             crop.x, crop.y, options.width, options.height));
   const double pixels =
       crop.width > 0 ? double(crop.width) * crop.height : double(options.width) * options.height;
-  const double bytes = pixels * film_bytes_per_pixel;
+  const double bytes = pixels * bytes_per_pixel(layers);
   const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
   if (bytes > memory)
     throw Error(
@@ -246,6 +271,8 @@ bool print_requested_list(const RenderFlags& flags) {
     print_table(accelerators());
   } else if (flags.show == "help") {
     for (const auto& name : raycast_shows()) fmt::print("{}\n", name);
+  } else if (flags.layers == "help") {
+    print_layers();
   } else if (flags.display.view == "help") {
     DisplayOptions display = flags.display;
     display.view.clear();
@@ -266,8 +293,9 @@ RenderRequest check_render_flags(const RenderFlags& flags) {
   request.integrator = make_integrator(flags);
   if (!flags.accelerator.empty()) find_by_name(accelerators(), "accelerator", flags.accelerator);
   request.options = make_options(flags);
-  if (request.options.width > 0) check_picture_size(request.options);
   request.progress = parse_progress(flags);
+  request.layers = choose_layers(flags);
+  if (request.options.width > 0) check_picture_size(request.options, request.layers);
   request.display = choose_display(flags);
   for (const auto& path : flags.outputs) check_writable_image(path);
   for (const auto& path : {flags.stats, flags.report})

@@ -9,6 +9,7 @@
 #include "core/base/quantities.h"
 #include "core/image/display.h"
 #include "integrators/integrator.h"
+#include "integrators/layers.h"
 #include "integrators/render.h"
 #include "scene/description.h"
 #include "scene/import/import.h"
@@ -39,6 +40,7 @@ struct RenderFlags {
   float environment_rotate = 0;  ///< degrees
   float environment_scale = 1;
 
+  std::string layers;  ///< --aov; empty: none
   DisplayOptions display;
   std::string progress = "auto";
   std::string stats, report;
@@ -51,6 +53,7 @@ struct RenderRequest {
   std::unique_ptr<Integrator> integrator;
   RenderOptions options;  ///< width 0: not given
   ProgressMode progress = ProgressMode::automatic;
+  std::vector<Layer> layers;
   DisplayOptions display;
   std::shared_ptr<const EnvironmentDescription> environment;  ///< null: the scene's own
 };
@@ -64,8 +67,9 @@ bool print_requested_list(const RenderFlags& flags);
 /// Checks names, sizes, outputs and reads the environment. Throws Error.
 RenderRequest check_render_flags(const RenderFlags& flags);
 
-/// Whether the crop lies in the picture, and the picture in memory. Throws Error(usage) or Error(memory).
-void check_picture_size(const RenderOptions& options);
+/// Whether the crop lies in the picture, and the picture with its layers in memory. Throws Error(usage) or
+/// Error(memory).
+void check_picture_size(const RenderOptions& options, std::span<const Layer> layers);
 
 /// Whether a file is written as display values (PNG, JPEG) rather than scene-linear ones (EXR). By extension.
 bool is_display_file(const std::string& path);

@@ -6,8 +6,8 @@
 #include <chrono>
 #include <mutex>
 
+#include "integrators/camera_sample.h"
 #include "integrators/sample_plan.h"
-#include "scene/camera.h"
 #include "scene/scene.h"
 
 namespace vernier {
@@ -114,11 +114,8 @@ class Renderer {
   void render_sample(int x, int y, int half, Totals& totals) {
     const int full_x = crop_.x + x, full_y = crop_.y + y;
     const uint32_t index = taken(x, y, half)++;
-    Sampler sampler(uint32_t(full_y) * uint32_t(options_.width) + uint32_t(full_x), index,
-                    2 * options_.seed + uint64_t(half));
-    const Vec2f in_pixel = sampler.next2();
-    const Ray ray = camera_.ray({float(full_x) + in_pixel.x, float(full_y) + in_pixel.y});
-    const Estimate estimate = integrator_.estimate(scene_, ray, sampler);
+    CameraSample sample = camera_sample(camera_, options_.width, full_x, full_y, half, index, options_.seed);
+    const Estimate estimate = integrator_.estimate(scene_, sample.ray, sample.sampler);
     ++totals.samples;
     totals.rays += estimate.rays;
     if (!result_.film.add(x, y, half, estimate.radiance)) totals.bad.push_back({full_x, full_y, half, index});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
+#include <optional>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -23,46 +24,86 @@ double student_p(double t, double degrees) {
 // Smallest of `count` p-values to the p-value of that minimum.
 double sidak(double smallest, int count) { return -std::expm1(count * std::log1p(-smallest)); }
 
+// Sums of x - y and of its variance over pixels.
 struct Sums {
   std::array<double, 3> difference{}, variance{};
-  int64_t not_finite = 0;
+  // Sum of squared variances over their degrees of freedom, for Welch and Satterthwaite's formula.
+  std::array<double, 3> spread_of_variance{};
+  int64_t pixels = 0;
+
+  void add_pixel(const MeasuredImage& x, const MeasuredImage& y, size_t at);
+  void add(const Sums& other);
+  double p_value() const;
 };
 
-// p-value of one channel of one pixel; adds to the picture's sums.
-double channel_p(const MeasuredImage& x, const MeasuredImage& y, size_t at, int c, Sums& sums) {
-  const double vx = squared(double(x.error.values[at])), vy = squared(double(y.error.values[at]));
-  const double difference = double(x.mean.values[at]) - y.mean.values[at];
-  const double largest = std::max(std::abs(x.mean.values[at]), std::abs(y.mean.values[at]));
-  const double rounding = 2 * largest * std::numeric_limits<float>::epsilon();
-  const double beyond = std::max(0.0, std::abs(difference) - rounding);
-  sums.difference[size_t(c)] += std::copysign(beyond, difference);
-  sums.variance[size_t(c)] += vx + vy;
-  if (beyond == 0) return 1;
-  if (vx + vy == 0) return 0;
-  // Welch and Satterthwaite's degrees of freedom.
-  const double degrees = squared(vx + vy) / (squared(vx) / x.degrees + squared(vy) / y.degrees);
-  return student_p(beyond / std::sqrt(vx + vy), degrees);
+void Sums::add_pixel(const MeasuredImage& x, const MeasuredImage& y, size_t at) {
+  ++pixels;
+  for (size_t c = 0; c < 3; ++c, ++at) {
+    const double vx = squared(double(x.error.values[at])), vy = squared(double(y.error.values[at]));
+    const double apart = double(x.mean.values[at]) - y.mean.values[at];
+    const double largest = std::max(std::abs(x.mean.values[at]), std::abs(y.mean.values[at]));
+    const double rounding = 2 * largest * std::numeric_limits<float>::epsilon();
+    difference[c] += std::copysign(std::max(0.0, std::abs(apart) - rounding), apart);
+    variance[c] += vx + vy;
+    spread_of_variance[c] += squared(vx) / x.degrees + squared(vy) / y.degrees;
+  }
 }
 
-// p-values of one row, 2 for a pixel that is not tested.
-std::vector<double> row_p_values(const MeasuredImage& x, const MeasuredImage& y, int row, Sums& sums) {
-  std::vector<double> p_values;
-  for (int column = 0; column < x.mean.width; ++column) {
-    const size_t at = size_t(x.mean.pixel(column, row) - x.mean.values.data());
-    bool finite = true;
-    for (const Image* image : {&x.mean, &x.error, &y.mean, &y.error})
-      for (size_t c = 0; c < 3; ++c) finite = finite && std::isfinite(image->values[at + c]);
-    double smallest = 2;
-    if (finite) {
-      for (int c = 0; c < 3; ++c) smallest = std::min(smallest, channel_p(x, y, at + size_t(c), c, sums));
-      smallest = sidak(smallest, 3);
-    } else {
-      ++sums.not_finite;
-    }
-    p_values.push_back(smallest);
+void Sums::add(const Sums& other) {
+  pixels += other.pixels;
+  for (size_t c = 0; c < 3; ++c) {
+    difference[c] += other.difference[c];
+    variance[c] += other.variance[c];
+    spread_of_variance[c] += other.spread_of_variance[c];
   }
-  return p_values;
 }
+
+// That the expectation of every channel's difference is nought.
+double Sums::p_value() const {
+  double smallest = 1;
+  for (size_t c = 0; c < 3; ++c) {
+    if (difference[c] == 0) continue;
+    if (variance[c] == 0) return 0;
+    const double degrees = squared(variance[c]) / spread_of_variance[c];  // infinite for sure errors
+    smallest = std::min(smallest, student_p(std::abs(difference[c]) / std::sqrt(variance[c]), degrees));
+  }
+  return sidak(smallest, 3);
+}
+
+bool is_finite_pixel(const MeasuredImage& x, const MeasuredImage& y, size_t at) {
+  for (const Image* image : {&x.mean, &x.error, &y.mean, &y.error})
+    for (size_t c = 0; c < 3; ++c)
+      if (!std::isfinite(image->values[at + c])) return false;
+  return true;
+}
+
+bool is_unreliable(const MeasuredImage& image, int column, int row) {
+  return image.unreliable && *image.unreliable->pixel(column, row) != 0;
+}
+
+// One row of blocks.
+struct BlockRow {
+  std::vector<Sums> blocks;
+  Sums all;  // pixels not to be trusted included
+  int64_t not_finite = 0, unreliable = 0;
+
+  BlockRow(const MeasuredImage& x, const MeasuredImage& y, int top, int block)
+      : blocks(size_t((x.mean.width + block - 1) / block)) {
+    for (int row = top; row < std::min(top + block, x.mean.height); ++row)
+      for (int column = 0; column < x.mean.width; ++column) {
+        const size_t at = size_t(x.mean.pixel(column, row) - x.mean.values.data());
+        if (!is_finite_pixel(x, y, at)) {
+          ++not_finite;
+          continue;
+        }
+        all.add_pixel(x, y, at);
+        if (is_unreliable(x, column, row) || is_unreliable(y, column, row))
+          ++unreliable;
+        else
+          blocks[size_t(column / block)].add_pixel(x, y, at);
+      }
+  }
+};
 
 // How many of the p-values Benjamini and Hochberg's procedure rejects.
 int64_t count_rejected(std::vector<double> p_values, double level) {
@@ -77,48 +118,47 @@ void check(const MeasuredImage& x, const MeasuredImage& y) {
     if (image->width != x.mean.width || image->height != x.mean.height || image->channels != 3)
       throw Error(ErrorKind::usage,
                   "pictures and error layers to test for bias need one size and three channels");
+  for (const Image* image : {x.unreliable, y.unreliable})
+    if (image && (image->width != x.mean.width || image->height != x.mean.height || image->channels != 1))
+      throw Error(ErrorKind::usage,
+                  "the layer of unreliable pixels needs the picture's size and one channel");
 }
 
 }  // namespace
 
-BiasTest test_bias(const MeasuredImage& x, const MeasuredImage& y, double level) {
+BiasTest test_bias(const MeasuredImage& x, const MeasuredImage& y, double level, int block) {
   check(x, y);
-  const size_t height = size_t(x.mean.height);
-  std::vector<Sums> sums(height);
-  std::vector<std::vector<double>> rows(height);
-  parallel_for(height, [&](size_t row) { rows[row] = row_p_values(x, y, int(row), sums[row]); });
+  const size_t count = size_t((x.mean.height + block - 1) / block);
+  std::vector<std::optional<BlockRow>> rows(count);
+  parallel_for(count, [&](size_t row) { rows[row].emplace(x, y, int(row) * block, block); });
 
   BiasTest result;
   result.level = level;
+  result.block = block;
   std::vector<double> p_values;
   Sums total;
-  for (size_t row = 0; row < height; ++row) {
-    for (size_t c = 0; c < 3; ++c) {
-      total.difference[c] += sums[row].difference[c];
-      total.variance[c] += sums[row].variance[c];
-    }
-    result.not_finite += sums[row].not_finite;
-    for (size_t column = 0; column < rows[row].size(); ++column) {
-      const double p = rows[row][column];
-      if (p > 1) continue;
+  for (size_t row = 0; row < count; ++row) {
+    total.add(rows[row]->all);
+    result.not_finite += rows[row]->not_finite;
+    result.unreliable += rows[row]->unreliable;
+    for (size_t column = 0; column < rows[row]->blocks.size(); ++column) {
+      const Sums& sums = rows[row]->blocks[column];
+      if (sums.pixels == 0) continue;
+      const double p = sums.p_value();
       p_values.push_back(p);
       if (p >= result.smallest_p) continue;
       result.smallest_p = p;
-      result.worst_x = int(column);
-      result.worst_y = int(row);
+      result.worst_x = int(column) * block;
+      result.worst_y = int(row) * block;
     }
   }
   result.tested = int64_t(p_values.size());
-  if (p_values.empty()) return result;
+  if (total.pixels == 0) return result;
   for (size_t c = 0; c < 3; ++c) {
-    result.mean_difference[c] = total.difference[c] / double(result.tested);
-    result.mean_error[c] = std::sqrt(total.variance[c]) / double(result.tested);
-    if (result.mean_difference[c] == 0) continue;
-    const double z =
-        std::abs(result.mean_difference[c]) / result.mean_error[c];  // infinite for exact pictures
-    result.mean_p = std::min(result.mean_p, student_p(z, std::numeric_limits<double>::infinity()));
+    result.mean_difference[c] = total.difference[c] / double(total.pixels);
+    result.mean_error[c] = std::sqrt(total.variance[c]) / double(total.pixels);
   }
-  result.mean_p = sidak(result.mean_p, 3);
+  result.mean_p = total.p_value();
   result.differing = count_rejected(std::move(p_values), level);
   return result;
 }

@@ -7,12 +7,27 @@ Vec3d Film::half_mean(int x, int y, int half) const {
   return cell.count ? cell.sum / double(cell.count) : Vec3d(0, 0, 0);
 }
 
+Vec3d Film::spread(const Cell& cell) {
+  if (cell.count < 2) return {0, 0, 0};
+  return max(cell.sum_of_squares - cell.sum * cell.sum / double(cell.count), Vec3d(0, 0, 0));
+}
+
 Vec3d Film::half_mean_variance(int x, int y, int half) const {
   const Cell& cell = cells_[index(x, y, half)];
   if (cell.count < 2) return {0, 0, 0};
   const double n = cell.count;
-  const Vec3d spread = cell.sum_of_squares - cell.sum * cell.sum / n;
-  return max(spread, Vec3d(0, 0, 0)) / ((n - 1) * n);
+  return spread(cell) / ((n - 1) * n);
+}
+
+Vec3d Film::sample_variance(int x, int y) const {
+  Vec3d sum(0, 0, 0);
+  double degrees = 0;
+  for (int half = 0; half < halves; ++half) {
+    const Cell& cell = cells_[index(x, y, half)];
+    sum += spread(cell);
+    degrees += std::max(1.0, double(cell.count)) - 1;
+  }
+  return degrees > 0 ? sum / degrees : sum;
 }
 
 Vec3d Film::pixel(int x, int y) const {

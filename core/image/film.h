@@ -39,6 +39,9 @@ class Film {
   /// Variance that the mean of one half would have if its samples were independent: an upper bound in
   /// practice, since they are stratified. Zero with fewer than two samples.
   Vec3d half_mean_variance(int x, int y, int half) const;
+  /// Variance of a single sample of the pixel, from the spread of the samples within each half. Zero while
+  /// neither half has two samples.
+  Vec3d sample_variance(int x, int y) const;
 
   /// The pixel: the mean of the two halves' means, so that its weights do not depend on the samples even when
   /// the number of samples does; of the first half alone while the second has none.
@@ -56,6 +59,8 @@ class Film {
     uint32_t count = 0;
     float largest = 0;
   };
+  /// Sum of the squared distances of the samples to their mean.
+  static Vec3d spread(const Cell& cell);
   size_t index(int x, int y, int half) const { return (size_t(y) * width_ + x) * halves + half; }
 
   int width_, height_;

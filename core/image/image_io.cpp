@@ -111,6 +111,15 @@ std::optional<Image> LayeredImage::layer(const std::string& name) const {
   return std::nullopt;
 }
 
+std::optional<Image> LayeredImage::single(const std::string& name) const {
+  const int chosen = channel(name);
+  if (chosen < 0) return std::nullopt;
+  Image result(image.width, image.height, 1);
+  for (size_t i = 0; i < result.values.size(); ++i)
+    result.values[i] = image.values[i * size_t(image.channels) + size_t(chosen)];
+  return result;
+}
+
 LayeredImage read_layers(const std::string& path, const ImageLimits& limits) {
   LayeredImage result;
   std::vector<uint8_t> bytes = read_bytes(path, 32);

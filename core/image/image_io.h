@@ -39,6 +39,8 @@ struct LayeredImage {
   Image rgb() const;
   /// The channels NAME.R, NAME.G, NAME.B or NAME.X, NAME.Y, NAME.Z; empty when one is missing.
   std::optional<Image> layer(const std::string& name) const;
+  /// The channel NAME as a picture of one channel; empty when it is missing.
+  std::optional<Image> single(const std::string& name) const;
 
  private:
   int channel(const std::string& name) const;

@@ -112,34 +112,35 @@ TEST_F(Compare, FlipAndItsMap) {
   EXPECT_FALSE(json::parse(compare({a_, b_, "--json", "--no-flip"}).out)["metrics"].contains("flip"));
 }
 
-// 12x12 pictures with an error layer of 0.01 from 16 groups; one pixel is `shift` errors away.
+// 12x12 pictures with an error layer of 0.01 from 17 samples; one pixel is `shift` errors away.
 std::string with_error(const TemporaryFolder& folder, const std::string& name, float shift) {
   Image image(12, 12, 6);
   for (int i = 0; i < 144; ++i)
     for (int c = 0; c < 6; ++c) image.values[size_t(6 * i + c)] = c < 3 ? 0.5f : 0.01f;
   image.pixel(7, 3)[1] += shift * 0.01f;
   write_exr(folder.file(name), image, {"R", "G", "B", "error.R", "error.G", "error.B"},
-            {{"vernier:error_groups", "16"}});
+            {{"vernier:samplesPerPixel", "17"}});
   return folder.file(name);
 }
 
 TEST_F(Compare, BiasTestUsesBothErrorLayers) {
   const std::string base = with_error(folder_, "0.exr", 0), near = with_error(folder_, "3.exr", 3),
                     far = with_error(folder_, "20.exr", 20);
-  const json same = json::parse(compare({base, near, "--json"}).out)["bias"];
+  const json same = json::parse(compare({base, near, "--json", "--bias-block", "1"}).out)["bias"];
   EXPECT_EQ(same["different"], false);
-  EXPECT_EQ(same["pixels_tested"], 144);
-  const ProcessResult failed = compare({base, far, "--json", "--fail", "differing>0"});
+  EXPECT_EQ(same["blocks_tested"], 144);
+  const ProcessResult failed = compare({base, far, "--json", "--bias-block=1", "--fail", "differing>0"});
   EXPECT_EQ(failed.exit_code, comparison_failed);
   const json bias = json::parse(failed.out)["bias"];
   EXPECT_EQ(bias["different"], true);
-  EXPECT_EQ(bias["pixels_differing"], 1);
+  EXPECT_EQ(bias["blocks_differing"], 1);
   EXPECT_EQ(bias["smallest_p_at"], json::array({7, 3}));
   // Student's t with 30 degrees of freedom, not the normal distribution: 20 / sqrt 2 errors have p = 1e-14,
   // times 3.
   EXPECT_GT(bias["smallest_p"], 1e-15);
   EXPECT_LT(bias["smallest_p"], 1e-12);
-  EXPECT_THAT(compare({base, far}).out, HasSubstr("different expectations"));
+  EXPECT_THAT(compare({base, far, "--bias-block", "1"}).out, HasSubstr("different expectations"));
+  EXPECT_EQ(json::parse(compare({base, far, "--json"}).out)["bias"]["blocks_tested"], 4);
   EXPECT_FALSE(json::parse(compare({a_, b_, "--json"}).out).contains("bias"));
 }
 

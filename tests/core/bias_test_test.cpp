@@ -151,5 +151,32 @@ TEST(BiasTest, SizesMustAgree) {
   EXPECT_THROW(test_bias({a, Image(2, 2, 1)}, {a, a}), Error);
 }
 
+// Less than a standard deviation in each pixel is lost among pixels and found in blocks of 64.
+TEST(BiasTest, BlocksFindWhatIsFaintAndWide) {
+  const auto in_corner = [](int x, int y) { return x < 24 && y < 24 ? 0.7 : 0.0; };
+  const Render a = render(1, 16, unbiased), b = render(2, 16, in_corner);
+  EXPECT_EQ(test(a, b, 15).differing, 0);
+  const BiasTest blocks = test_bias({a.mean, a.error, 15}, {b.mean, b.error, 15}, 0.01, 8);
+  EXPECT_EQ(blocks.tested, 36);
+  EXPECT_GE(blocks.differing, 5);
+  EXPECT_LE(blocks.differing, 9);
+  EXPECT_TRUE(blocks.worst_x < 24 && blocks.worst_y < 24);
+}
+
+// Pixels whose error is too small, and known to be.
+TEST(BiasTest, UnreliablePixelsAreLeftOut) {
+  const Render a = render(1, 16, unbiased);
+  Render b = render(2, 16, [](int x, int y) { return x == 5 && y == 7 ? 50.0 : 0.0; });
+  Image flags(size, size, 1);
+  *flags.pixel(5, 7) = 1;
+  EXPECT_EQ(test(a, b, 15).differing, 1);
+  const BiasTest result = test_bias({a.mean, a.error, 15}, {b.mean, b.error, 15, &flags});
+  EXPECT_EQ(result.differing, 0);
+  EXPECT_EQ(result.unreliable, 1);
+  EXPECT_EQ(result.tested, size * size - 1);
+  const Image wrong(size, 1, 1);
+  EXPECT_THROW(test_bias({a.mean, a.error, 15, &wrong}, {b.mean, b.error, 15}), Error);
+}
+
 }  // namespace
 }  // namespace vernier

@@ -1,0 +1,93 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/image/image_io.h"
+#include "integrators/layers.h"
+#include "tests/support/process.h"
+
+namespace vernier::test {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string cornell_box = VERNIER_SOURCE_DIR "/tests/scenes/cornell_box.gltf";
+
+ProcessResult render(const std::vector<std::string>& more) {
+  std::vector<std::string> arguments{"render", cornell_box, "--progress", "none", "--size", "24x24"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return run_vernier(arguments);
+}
+
+TEST(LayersOfAFile, EveryChannelIsThere) {
+  const TemporaryFolder folder;
+  const ProcessResult result = render({"--spp", "20", "--aov", "all", "--crop", "10x8+4+5", "-o",
+                                       folder.file("a.exr"), "-o", folder.file("a.png")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const LayeredImage file = read_layers(folder.file("a.exr"));
+  EXPECT_EQ(file.image.width, 10);
+  EXPECT_EQ(file.image.height, 8);
+  for (const Layer& layer : layers())
+    for (int c = 0; c < layer.channel_count(); ++c)
+      EXPECT_TRUE(file.single(std::string(layer.channels[size_t(c)]))) << layer.channels[size_t(c)];
+  const Image counts = *file.single("samples");
+  double samples = 0;
+  for (const float count : counts.values) samples += count;
+  EXPECT_NEAR(samples / 80, std::stod(file.metadata.at("vernier:samplesPerPixel")), 1e-3);
+  EXPECT_EQ(read_layers(folder.file("a.png")).image.channels, 3);
+}
+
+TEST(LayersOfAFile, SameForAnyNumberOfThreads) {
+  const TemporaryFolder folder;
+  std::vector<Image> images;
+  for (const char* threads : {"1", "3"}) {
+    ASSERT_EQ(render({"--spp", "32", "--aov", "all", "-t", threads, "-o", folder.file("a.exr")}).exit_code,
+              0);
+    images.push_back(read_layers(folder.file("a.exr")).image);
+  }
+  EXPECT_EQ(images[0].values, images[1].values);
+}
+
+TEST(LayersOfAFile, CanBeListed) {
+  const ProcessResult result = run_vernier({"render", "--aov", "help"});
+  EXPECT_EQ(result.exit_code, 0);
+  for (const Layer& layer : layers()) {
+    EXPECT_THAT(result.out, HasSubstr(std::string(layer.name)));
+    EXPECT_THAT(result.out, HasSubstr(std::string(layer.channels[0])));
+  }
+}
+
+TEST(LayersOfAFile, UsageErrors) {
+  const TemporaryFolder folder;
+  const ProcessResult unknown = render({"--aov", "error,albdo", "-o", folder.file("a.exr")});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'albedo'"));
+  const ProcessResult flat = render({"--aov", "error", "-o", folder.file("a.png")});
+  EXPECT_EQ(flat.exit_code, 2);
+  EXPECT_THAT(flat.err, HasSubstr("only an .exr can hold layers"));
+  EXPECT_TRUE(folder.names().empty());
+}
+
+// Two renders of one picture do not differ by their own error layers; light left out shows.
+TEST(LayersOfAFile, ErrorLayersServeTheBiasTest) {
+  const TemporaryFolder folder;
+  const auto picture = [&](const char* seed, const char* depth) {
+    const std::string path = folder.file(std::string(seed) + ".exr");
+    EXPECT_EQ(
+        render({"--spp", "64", "--aov", "error", "--seed", seed, "--max-depth", depth, "-o", path}).exit_code,
+        0);
+    return path;
+  };
+  const std::string a = picture("1", "16"), b = picture("2", "16"), c = picture("3", "3");
+  const auto bias = [](const std::string& x, const std::string& y) {
+    return nlohmann::json::parse(run_vernier({"compare", x, y, "--json", "--no-flip"}).out)["bias"];
+  };
+  EXPECT_EQ(bias(a, b)["different"], false) << bias(a, b);
+  EXPECT_EQ(bias(a, c)["different"], true) << bias(a, c);
+  EXPECT_GT(bias(a, c)["blocks_differing"], 3);
+  EXPECT_EQ(bias(a, b)["block"], 8);
+}
+
+}  // namespace
+}  // namespace vernier::test
