@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <mutex>
 
@@ -31,6 +32,8 @@ class Renderer {
         crop_(options.crop.width > 0 ? options.crop : Crop{0, 0, options.width, options.height}),
         stop_(stop),
         observe_(observe),
+        guides_{SampleGuide(options.adaptive ? crop_.width : 0, crop_.height),
+                SampleGuide(options.adaptive ? crop_.width : 0, crop_.height)},
         result_(Film(crop_.width, crop_.height)) {}
 
   RenderResult run() {
@@ -38,8 +41,8 @@ class Renderer {
     while (!reason_) {
       const uint32_t count = next_pass(done);
       const bool may_adapt = options_.adaptive && done >= pilot;
-      const SamplePlan plan =
-          may_adapt ? SamplePlan::adaptive(result_.film, count) : SamplePlan::uniform(result_.film, count);
+      const SamplePlan plan = may_adapt ? SamplePlan::adaptive(result_.film, guides_, count)
+                                        : SamplePlan::uniform(result_.film, count);
       render_pass(plan, done == 0);
       done += count;
       look(done);
@@ -105,20 +108,23 @@ class Renderer {
       for (int y = y0; y < std::min(y0 + tile_size, crop_.height); ++y)
         for (int x = x0; x < std::min(x0 + tile_size, crop_.width); ++x)
           for (int half = 0; half < Film::halves; ++half)
-            for (uint32_t count = plan.count(x, y, half); count > 0; --count)
-              render_sample(x, y, half, totals);
+            for (uint32_t i = 0; i < plan.count(x, y, half); ++i)
+              render_sample(x, y, half, options_.adaptive && i < plan.even_count(half), totals);
       merge(totals);
     });
   }
 
-  void render_sample(int x, int y, int half, Totals& totals) {
+  void render_sample(int x, int y, int half, bool guides, Totals& totals) {
     const int full_x = crop_.x + x, full_y = crop_.y + y;
     const uint32_t index = taken(x, y, half)++;
     CameraSample sample = camera_sample(camera_, options_.width, full_x, full_y, half, index, options_.seed);
     const Estimate estimate = integrator_.estimate(scene_, sample.ray, sample.sampler);
     ++totals.samples;
     totals.rays += estimate.rays;
-    if (!result_.film.add(x, y, half, estimate.radiance)) totals.bad.push_back({full_x, full_y, half, index});
+    if (!result_.film.add(x, y, half, estimate.radiance))
+      totals.bad.push_back({full_x, full_y, half, index});
+    else if (guides)
+      guides_[size_t(half)].add(x, y, estimate.radiance);
   }
 
   void merge(const Totals& totals) {
@@ -167,6 +173,7 @@ class Renderer {
   std::optional<ErrorEstimate> error_;
   std::vector<uint32_t> taken_ = std::vector<uint32_t>(size_t(crop_.width) * crop_.height * Film::halves);
   std::mutex mutex_;
+  std::array<SampleGuide, Film::halves> guides_;
   RenderResult result_;
 };
 

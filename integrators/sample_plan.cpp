@@ -3,63 +3,57 @@
 #include "core/base/parallel.h"
 
 namespace vernier {
-namespace {
 
-/// How strongly the image's relative error depends on more samples of a pixel, as seen by one half: the
-/// spread of a single sample over sqrt(r^2 + 0.01).
-double need(const Film& film, int x, int y, int half) {
-  const Vec3d mean = film.half_mean(x, y, half);
-  const Vec3d variance = film.half_mean_variance(x, y, half) * double(film.samples(x, y, half));
-  double relative = 0;
-  for (int c = 0; c < 3; ++c) relative += variance[c] / (mean[c] * mean[c] + 0.01);
-  return std::sqrt(relative);
+float SampleGuide::squared_need(const Cell& cell) {
+  if (cell.count < 2) return 0;
+  const auto n = float(cell.count);
+  float relative = 0;
+  for (int c = 0; c < 3; ++c) {
+    const float mean = cell.sum[c] / n;
+    const float variance = std::max(0.f, cell.sum_of_squares[c] - cell.sum[c] * mean) / (n - 1);
+    relative += variance / (mean * mean + 0.01f);
+  }
+  return relative;
 }
 
-/// Needs of one half, each the mean over its 3x3 neighbourhood: one pixel's own figure is too noisy to act
-/// on, and a neighbour's surprise is a warning.
-std::vector<double> smooth_needs(const Film& film, int half) {
-  const int w = film.width(), h = film.height();
-  std::vector<double> raw(size_t(w) * h), smooth(raw.size());
-  parallel_for(size_t(h), [&](size_t y) {
-    for (int x = 0; x < w; ++x) raw[y * w + x] = need(film, x, int(y), half);
-  });
-  parallel_for(size_t(h), [&](size_t row) {
+std::vector<float> SampleGuide::needs() const {
+  std::vector<float> raw(cells_.size()), smooth(cells_.size());
+  parallel_for(cells_.size(), [&](size_t i) { raw[i] = squared_need(cells_[i]); });
+  parallel_for(size_t(height_), [&](size_t row) {
     const int y = int(row);
-    for (int x = 0; x < w; ++x) {
-      double sum = 0;
+    for (int x = 0; x < width_; ++x) {
+      float sum = 0;
       int count = 0;
-      for (int j = std::max(0, y - 1); j <= std::min(h - 1, y + 1); ++j)
-        for (int i = std::max(0, x - 1); i <= std::min(w - 1, x + 1); ++i, ++count)
-          sum += raw[size_t(j) * w + i];
-      smooth[row * w + x] = sum / count;
+      for (int j = std::max(0, y - 1); j <= std::min(height_ - 1, y + 1); ++j)
+        for (int i = std::max(0, x - 1); i <= std::min(width_ - 1, x + 1); ++i, ++count)
+          sum += raw[size_t(j) * width_ + i];
+      smooth[row * width_ + x] = std::sqrt(sum / float(count));
     }
   });
   return smooth;
 }
-
-}  // namespace
 
 SamplePlan SamplePlan::uniform(const Film& film, uint32_t count) {
   SamplePlan plan;
   plan.width_ = film.width();
   // An odd sample goes to the half that has fewer.
   const bool second_lags = film.samples(0, 0, 1) < film.samples(0, 0, 0);
-  plan.uniform_[0] = count / 2 + (count % 2 && !second_lags);
-  plan.uniform_[1] = count - plan.uniform_[0];
+  plan.even_[0] = count / 2 + (count % 2 && !second_lags);
+  plan.even_[1] = count - plan.even_[0];
   return plan;
 }
 
-SamplePlan SamplePlan::adaptive(const Film& film, uint32_t count) {
+SamplePlan SamplePlan::adaptive(const Film& film, std::span<const SampleGuide, Film::halves> guides,
+                                uint32_t count) {
   SamplePlan plan;
   plan.width_ = film.width();
   const size_t pixels = size_t(film.width()) * film.height();
   plan.counts_.resize(pixels * Film::halves);
   const double per_half = count / 2.0;
-  // A pixel gets at least a quarter of its even share, so that none is given up on luck, and at most eight
-  // times.
-  const double fewest = per_half / 4, most = per_half * 8;
+  // At most eight times the even share, so that a plan made on little evidence does not spend everything.
+  const double fewest = std::floor(per_half / 4), most = per_half * 8;
   for (int half = 0; half < Film::halves; ++half) {
-    const std::vector<double> needs = smooth_needs(film, 1 - half);
+    const std::vector<float> needs = guides[size_t(1 - half)].needs();
     double need_sum = 0, done_sum = 0;
     for (size_t i = 0; i < pixels; ++i) {
       need_sum += needs[i];
@@ -83,11 +77,12 @@ SamplePlan SamplePlan::adaptive(const Film& film, uint32_t count) {
     // Fractions are carried along the row of pixels so that the total is met.
     double carried = 0;
     for (size_t i = 0; i < pixels; ++i) {
-      carried += wanted(i);
+      carried += wanted(i) - fewest;
       const double whole = std::floor(carried);
       carried -= whole;
-      plan.counts_[i * Film::halves + size_t(half)] = uint16_t(std::min(whole, 65535.0));
+      plan.counts_[i * Film::halves + size_t(half)] = uint16_t(std::min(fewest + whole, 65535.0));
     }
+    plan.even_[half] = uint32_t(fewest);
   }
   return plan;
 }
