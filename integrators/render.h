@@ -46,6 +46,7 @@ struct BadSample {
   int x = 0, y = 0;
   int half = 0;
   uint32_t index = 0;  ///< within the half
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 reads what the compiler writes
   auto operator<=>(const BadSample&) const = default;
 };
 

@@ -22,9 +22,9 @@ class SampleGuide {
     ++cell.count;
   }
 
-  /// How strongly the image's relative error depends on each pixel's number of samples: the spread of a single
-  /// sample over sqrt(r^2 + 0.01), root mean square over 3 x 3 pixels, since one pixel's own figure is too
-  /// noisy to act on and a neighbour's surprise is a warning.
+  /// How strongly the image's relative error depends on each pixel's number of samples: the spread of a
+  /// single sample over sqrt(r^2 + 0.01), root mean square over 3 x 3 pixels, since one pixel's own figure is
+  /// too noisy to act on and a neighbour's surprise is a warning.
   std::vector<float> needs() const;
 
  private:
@@ -45,10 +45,10 @@ class SamplePlan {
   /// `count` more samples for every pixel, the halves alike.
   static SamplePlan uniform(const Film& film, uint32_t count);
 
-  /// On average `count` more samples a pixel, more where they lower the image's relative error most; a quarter
-  /// of them is spread evenly, for the guides. The number for one half depends on the other half's guide only,
-  /// so that neither half's mean is biased by its own luck (Kirk and Arvo 1991, "Unbiased Sampling Techniques
-  /// for Image Synthesis").
+  /// On average `count` more samples a pixel, more where they lower the image's relative error most; a
+  /// quarter of them is spread evenly, for the guides. The number for one half depends on the other half's
+  /// guide only, so that neither half's mean is biased by its own luck (Kirk and Arvo 1991, "Unbiased
+  /// Sampling Techniques for Image Synthesis").
   static SamplePlan adaptive(const Film& film, std::span<const SampleGuide, Film::halves> guides,
                              uint32_t count);
 
