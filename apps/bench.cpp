@@ -17,6 +17,7 @@ namespace {
 /// Every bench, in the order of `vernier bench --help`.
 constexpr void (*benches[])(CLI::App&, Program&) = {
     register_bench_rays,
+    register_bench_convergence,
 };
 
 }  // namespace

@@ -16,6 +16,7 @@ namespace vernier::apps {
 // Each adds one subcommand to `bench`, with a callback that sets `program.run`, as commands.h says of
 // commands.
 void register_bench_rays(CLI::App& bench, Program& program);
+void register_bench_convergence(CLI::App& bench, Program& program);
 
 /// The lines of accelerators() called by `names`, in the table's order; "all" is every one.
 std::vector<const AcceleratorEntry*> accelerators_named(const std::vector<std::string>& names);

@@ -13,6 +13,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr int small_picture = 236;  // pixels: narrower ones are enlarged to this
+
 std::string base64(const std::vector<unsigned char>& bytes) {
   constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
@@ -132,8 +134,8 @@ void HtmlPage::figures(const std::vector<Figure>& figures) {
     body_ += fmt::format(
         "<figure{}><img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">"
         "<figcaption>{}</figcaption></figure>\n",
-        figure.pixelated ? " class=\"pixelated\"" : "", figure.picture.width, figure.picture.height, caption,
-        base64(encode_png(figure.picture)), caption);
+        figure.pixelated || figure.picture.width < small_picture ? " class=\"pixelated\"" : "",
+        figure.picture.width, figure.picture.height, caption, base64(encode_png(figure.picture)), caption);
   }
   body_ += "</div>\n";
 }

@@ -93,14 +93,7 @@ void add_integrator_flags(CLI::App& command, RenderFlags& flags) {
       ->capture_default_str();
   command.add_option("--accelerator", flags.accelerator, "ray query structure; 'help' lists them")
       ->type_name("NAME");
-  command.add_option("--env", flags.environment, "latitude-longitude picture of the surroundings (HDR, EXR)")
-      ->type_name("FILE");
-  command.add_option("--env-rotate", flags.environment_rotate, "degrees counter-clockwise seen from above")
-      ->check(real_number(-1e6, 1e6))
-      ->type_name("DEG");
-  command.add_option("--env-scale", flags.environment_scale, "multiplies its radiance")
-      ->check(real_number(0, 1e30))
-      ->type_name("S");
+  add_environment_flags(command, flags);
 }
 
 void add_output_flags(CLI::App& command, RenderFlags& flags) {
@@ -220,6 +213,19 @@ DisplayOptions choose_display(const RenderFlags& flags) {
   return display;
 }
 
+}  // namespace
+
+void add_environment_flags(CLI::App& command, RenderFlags& flags) {
+  command.add_option("--env", flags.environment, "latitude-longitude picture of the surroundings (HDR, EXR)")
+      ->type_name("FILE");
+  command.add_option("--env-rotate", flags.environment_rotate, "degrees counter-clockwise seen from above")
+      ->check(real_number(-1e6, 1e6))
+      ->type_name("DEG");
+  command.add_option("--env-scale", flags.environment_scale, "multiplies its radiance")
+      ->check(real_number(0, 1e30))
+      ->type_name("S");
+}
+
 std::shared_ptr<const EnvironmentDescription> read_environment(const RenderFlags& flags) {
   if (flags.environment.empty()) {
     if (flags.environment_rotate != 0 || flags.environment_scale != 1)
@@ -232,8 +238,6 @@ std::shared_ptr<const EnvironmentDescription> read_environment(const RenderFlags
   environment->scale = flags.environment_scale;
   return environment;
 }
-
-}  // namespace
 
 void add_render_flags(CLI::App& command, RenderFlags& flags) {
   command

@@ -61,6 +61,12 @@ struct RenderRequest {
 /// Declares the flags on `command`.
 void add_render_flags(CLI::App& command, RenderFlags& flags);
 
+/// The part of them that says what surrounds the scene.
+void add_environment_flags(CLI::App& command, RenderFlags& flags);
+
+/// Null: the scene's own. Throws Error.
+std::shared_ptr<const EnvironmentDescription> read_environment(const RenderFlags& flags);
+
 /// Prints the list that a flag given as "help" asks for; false when none was.
 bool print_requested_list(const RenderFlags& flags);
 

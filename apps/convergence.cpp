@@ -1,0 +1,342 @@
+#include "apps/convergence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/bench.h"
+#include "apps/choose_camera.h"
+#include "apps/convergence_fit.h"
+#include "apps/scene_summary.h"
+#include "core/base/error.h"
+#include "core/base/names.h"
+#include "core/image/image_io.h"
+#include "core/image/metrics.h"
+#include "scene/camera.h"
+#include "scene/scene.h"
+
+namespace vernier::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+constexpr int longest_side = 256;          // pixels, where no size was asked for
+constexpr uint64_t reference_seed = 9001;  // the others count from 1
+constexpr double errors_to_reach[] = {0.10, 0.05, 0.02, 0.01};
+const std::atomic<bool> never_stop{false};
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+struct Run {
+  uint64_t seed = 0;
+  double seconds = 0, samples_per_pixel = 0;
+  uint64_t rays = 0;
+  double rel_mse = 0;  ///< against the reference, the reference's own variance taken off
+  ErrorEstimate estimate;
+};
+
+/// The mean over pixels and channels of (x - r)^2 / (r^2 + 0.01) falls apart into the part that differs from
+/// seed to seed and the part that does not; sums over seeds tell the two.
+class SeedSums {
+ public:
+  void add(const Image& picture) {
+    sum_.resize(picture.values.size());
+    squares_.resize(picture.values.size());
+    for (size_t i = 0; i < sum_.size(); ++i) {
+      sum_[i] += picture.values[i];
+      squares_[i] += square(double(picture.values[i]));
+    }
+    ++count_;
+  }
+
+  /// Estimate without bias of the squared relative error that all seeds have in common; may come out
+  /// negative.
+  double common(const Image& reference) const {
+    double total = 0;
+    for (size_t i = 0; i < sum_.size(); ++i) {
+      const double mean = sum_[i] / count_, r = reference.values[i];
+      const double variance = (squares_[i] / count_ - mean * mean) / (count_ - 1);  // of the mean
+      total += (square(mean - r) - variance) / (r * r + 0.01);
+    }
+    return total / double(sum_.size());
+  }
+
+ private:
+  std::vector<double> sum_, squares_;
+  double count_ = 0;
+};
+
+struct Candidate {
+  std::string integrator_name, accelerator_name;
+  std::unique_ptr<Integrator> integrator;
+  const Scene* scene = nullptr;
+  double build_seconds = 0;
+  std::vector<std::vector<Run>> runs;  ///< by time, then seed
+  SeedSums longest;
+  ConvergencePictures pictures;
+
+  std::string name() const { return fmt::format("{}, {}", integrator_name, accelerator_name); }
+};
+
+struct Reference {
+  Image picture;
+  double rel_mse = 0;  ///< its own, as far as known
+  Json json;
+};
+
+Reference read_reference(const std::string& file) {
+  const LayeredImage layers = read_layers(file);
+  Reference reference{layers.rgb(), 0, {{"file", file}, {"rel_rmse", nullptr}}};
+  const auto error = layers.metadata.find("vernier:relRmse");
+  double value = 0;
+  if (error != layers.metadata.end()) {
+    const std::string& text = error->second;
+    if (std::from_chars(text.data(), text.data() + text.size(), value).ec == std::errc()) {
+      reference.json["rel_rmse"] = value;
+      reference.rel_mse = value * value;
+    }
+  }
+  return reference;
+}
+
+Reference render_reference(const Scene& scene, const Camera& camera, RenderOptions options, int spp,
+                           const IntegratorOptions& integrator_options) {
+  options.spp = spp;
+  options.seed = reference_seed;
+  options.adaptive = false;
+  const auto integrator = find_by_name(integrators(), "integrator", "path").make(integrator_options);
+  const RenderResult result = render(scene, camera, *integrator, options, never_stop);
+  return {result.film.image(),
+          square(result.error.rel_rmse),
+          {{"integrator", "path"},
+           {"samples_per_pixel", spp},
+           {"seconds", result.seconds},
+           {"rel_rmse", result.error.rel_rmse}}};
+}
+
+Run measure(Candidate& candidate, const Camera& camera, const RenderOptions& options,
+            const Reference& reference, bool longest) {
+  const RenderResult result = render(*candidate.scene, camera, *candidate.integrator, options, never_stop);
+  const Image picture = result.film.image();
+  if (longest) {
+    candidate.longest.add(picture);
+    if (candidate.pictures.picture.empty())
+      candidate.pictures = {candidate.name(), picture, relative_error_map(picture, reference.picture)};
+  }
+  Run run;
+  run.seed = options.seed;
+  run.seconds = result.seconds;
+  run.samples_per_pixel = double(result.samples) / (double(picture.width) * picture.height);
+  run.rays = result.rays.camera + result.rays.bounce + result.rays.shadow;
+  run.rel_mse = std::max(0.0, difference(picture, reference.picture).rel_mse - reference.rel_mse);
+  run.estimate = result.error;
+  return run;
+}
+
+template <typename Value>
+std::vector<double> values_of(const std::vector<Run>& runs, const Value& value) {
+  std::vector<double> values(runs.size());
+  std::transform(runs.begin(), runs.end(), values.begin(), value);
+  return values;
+}
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / double(values.size());
+}
+
+Json known(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json runs_json(const std::vector<Run>& runs) {
+  Json rows = Json::array();
+  for (const Run& run : runs)
+    rows.push_back({{"seed", run.seed},
+                    {"seconds", run.seconds},
+                    {"samples_per_pixel", run.samples_per_pixel},
+                    {"rays", run.rays},
+                    {"rel_rmse", std::sqrt(run.rel_mse)},
+                    {"estimated",
+                     {{"rel_rmse", known(run.estimate.rel_rmse)},
+                      {"low", known(run.estimate.low)},
+                      {"high", known(run.estimate.high)},
+                      {"unreliable", run.estimate.unreliable}}}});
+  return rows;
+}
+
+Json point_json(double asked, const std::vector<Run>& runs) {
+  const auto errors = values_of(runs, [](const Run& run) { return std::sqrt(run.rel_mse); });
+  const auto seconds = values_of(runs, [](const Run& run) { return run.seconds; });
+  const auto [low, high] = std::minmax_element(errors.begin(), errors.end());
+  const double rel_mse = mean(values_of(runs, [](const Run& run) { return run.rel_mse; }));
+  return {
+      {"asked_seconds", asked},
+      {"seconds", median(seconds)},
+      {"samples_per_pixel", median(values_of(runs, [](const Run& run) { return run.samples_per_pixel; }))},
+      {"rel_rmse", {{"median", median(errors)}, {"low", *low}, {"high", *high}}},
+      {"estimated", known(median(values_of(runs, [](const Run& run) { return run.estimate.rel_rmse; })))},
+      {"rel_mse", rel_mse},
+      {"efficiency", known(1 / (rel_mse * mean(seconds)))},
+      {"runs", runs_json(runs)}};
+}
+
+Json fit_json(const std::vector<ErrorAt>& points) {
+  const auto fit = fit_convergence(points);
+  if (!fit) return nullptr;
+  Json reach = Json::array();
+  for (const double error : errors_to_reach) {
+    const auto time = time_to_reach(error, points, *fit);
+    reach.push_back({{"rel_rmse", error},
+                     {"seconds", time ? Json(time->seconds) : Json(nullptr)},
+                     {"measured", time && time->measured}});
+  }
+  return {{"slope", fit->slope}, {"last_slope", fit->last_slope}, {"floor", fit->floor}, {"reach", reach}};
+}
+
+Json candidate_json(const Candidate& candidate, const ConvergencePlan& plan, const Reference& reference) {
+  Json points = Json::array();
+  std::vector<ErrorAt> medians;
+  for (size_t t = 0; t < plan.times.size(); ++t) {
+    points.push_back(point_json(plan.times[t], candidate.runs[t]));
+    // An error as small as the reference's comes out as nothing, which has no logarithm.
+    const ErrorAt middle{points.back()["seconds"], points.back()["rel_rmse"]["median"]};
+    if (middle.error > 0) medians.push_back(middle);
+  }
+  Json systematic = nullptr;
+  if (plan.seeds > 1) {
+    const double common = candidate.longest.common(reference.picture) - reference.rel_mse;
+    systematic = common > 0 ? std::sqrt(common) : 0;
+  }
+  return {{"integrator", candidate.integrator_name},
+          {"accelerator", candidate.accelerator_name},
+          {"build_seconds", candidate.build_seconds},
+          {"points", points},
+          {"fit", fit_json(medians)},
+          {"systematic", systematic}};
+}
+
+/// One scene an accelerator, and one candidate an integrator on it.
+std::vector<Candidate> make_candidates(const ConvergencePlan& plan, const SceneDescription& description,
+                                       std::vector<std::unique_ptr<Scene>>& scenes) {
+  std::vector<Candidate> candidates;
+  for (const auto& accelerator : plan.accelerators) {
+    const auto start = Clock::now();
+    scenes.push_back(std::make_unique<Scene>(description, Scene::Options{accelerator}));
+    const double build_seconds = seconds_since(start);
+    for (const auto& name : plan.integrators) {
+      Candidate& candidate = candidates.emplace_back();
+      candidate.integrator_name = name;
+      candidate.accelerator_name = accelerator;
+      candidate.integrator =
+          find_by_name(integrators(), "integrator", name).make(plan.render.integrator_options);
+      candidate.scene = scenes.back().get();
+      candidate.build_seconds = build_seconds;
+      candidate.runs.resize(plan.times.size());
+    }
+  }
+  return candidates;
+}
+
+/// Size as asked for, else that of the reference, else small.
+RenderOptions picture_options(const ConvergencePlan& plan, const CameraDescription& view,
+                              const std::optional<Reference>& reference) {
+  RenderOptions options;
+  options.adaptive = plan.render.adaptive == "on";
+  if (!plan.render.size.empty()) {
+    const PixelSize size = parse_pixel_size(plan.render.size);
+    options.width = size.width;
+    options.height = size.height;
+  } else if (reference) {
+    options.width = reference->picture.width;
+    options.height = reference->picture.height;
+  } else {
+    fill_in_size(options, view);
+    const int longer = std::max(options.width, options.height);
+    options.width = std::max(1, options.width * longest_side / longer);
+    options.height = std::max(1, options.height * longest_side / longer);
+  }
+  check_picture_size(options, {});
+  if (reference && (reference->picture.width != options.width || reference->picture.height != options.height))
+    throw Error(ErrorKind::usage, fmt::format("the reference has {}x{} pixels and --size asks for {}x{}",
+                                              reference->picture.width, reference->picture.height,
+                                              options.width, options.height));
+  return options;
+}
+
+}  // namespace
+
+Image relative_error_map(const Image& x, const Image& reference) {
+  Image map(x.width, x.height, 1);
+  for (size_t pixel = 0; pixel < map.values.size(); ++pixel) {
+    double sum = 0;
+    for (size_t c = 0; c < 3; ++c) {
+      const double r = reference.values[pixel * 3 + c];
+      sum += square(x.values[pixel * 3 + c] - r) / (r * r + 0.01);
+    }
+    map.values[pixel] = float(std::sqrt(sum / 3));
+  }
+  return map;
+}
+
+SceneConvergence measure_convergence(const ConvergencePlan& plan, size_t index, NoticeLog& log) {
+  const std::string& file = plan.scenes[index];
+  auto start = Clock::now();
+  SceneDescription description = import_scene(file, plan.render.import);
+  if (auto environment = read_environment(plan.render)) description.environment = std::move(environment);
+  const double load_seconds = seconds_since(start);
+  log.add(description.notices);
+  std::optional<Reference> given;
+  if (!plan.references.empty()) given = read_reference(plan.references[index]);
+
+  std::vector<std::unique_ptr<Scene>> scenes;
+  std::vector<Candidate> candidates = make_candidates(plan, description, scenes);
+  log.add(scenes.front()->notices());
+  const auto chosen = choose_camera(description.cameras, plan.render.camera, log);
+  const CameraDescription view = chosen ? *chosen : fit_camera(scenes.front()->bounds(), {}, log);
+  RenderOptions options = picture_options(plan, view, given);
+  const Camera camera(view, options.width, options.height);
+  if (!given) fmt::print(stderr, "{}: reference of {} samples a pixel\n", file, plan.reference_spp);
+  const Reference reference = given ? std::move(*given)
+                                    : render_reference(*scenes.front(), camera, options, plan.reference_spp,
+                                                       plan.render.integrator_options);
+
+  options.spp = 0;
+  for (int seed = 1; seed <= plan.seeds; ++seed) {
+    fmt::print(stderr, "{}: seed {} of {}\n", file, seed, plan.seeds);
+    options.seed = uint64_t(seed);
+    for (size_t t = 0; t < plan.times.size(); ++t) {
+      options.time_limit = plan.times[t];
+      for (Candidate& candidate : candidates)
+        candidate.runs[t].push_back(
+            measure(candidate, camera, options, reference, t + 1 == plan.times.size()));
+    }
+  }
+  SceneConvergence result;
+  result.json = {{"file", file},
+                 {"hash", description.hash},
+                 {"load_seconds", load_seconds},
+                 {"counts", to_json(count(description))},
+                 {"camera", view.name},
+                 {"width", options.width},
+                 {"height", options.height},
+                 {"adaptive", options.adaptive},
+                 {"reference", reference.json},
+                 {"candidates", Json::array()}};
+  for (Candidate& candidate : candidates) {
+    result.json["candidates"].push_back(candidate_json(candidate, plan, reference));
+    result.pictures.push_back(std::move(candidate.pictures));
+  }
+  result.reference = reference.picture;
+  return result;
+}
+
+}  // namespace vernier::apps
