@@ -94,7 +94,7 @@ ocio::ConstConfigRcPtr own_config() {
 
 ocio::ConstConfigRcPtr read_config(const std::string& file) {
   try {
-    const auto config = ocio::Config::CreateFromFile(file.c_str());
+    auto config = ocio::Config::CreateFromFile(file.c_str());
     config->validate();
     return config;
   } catch (const ocio::Exception& error) {
