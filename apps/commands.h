@@ -35,6 +35,7 @@ struct Program {
 void register_render(Program& program);
 void register_info(Program& program);
 void register_compare(Program& program);
+void register_denoise(Program& program);
 void register_bench(Program& program);
 
 }  // namespace vernier::apps

@@ -5,6 +5,7 @@
 
 #include "apps/choose_camera.h"
 #include "apps/commands.h"
+#include "apps/denoising.h"
 #include "apps/notice_log.h"
 #include "apps/progress.h"
 #include "apps/render_options.h"
@@ -55,6 +56,18 @@ void warn_of_bad_samples(const RenderResult& result, const RenderFlags& flags, N
 /// File names and arguments need not be UTF-8, which JSON is.
 std::string to_text(const nlohmann::ordered_json& json) {
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+/// Replaces the colour of `picture`, its first three channels, when a filter was asked for.
+std::optional<Denoised> denoise_if_asked(const RenderRequest& request, LayeredImage& picture,
+                                         Metadata& metadata) {
+  if (!request.denoiser) return std::nullopt;
+  Denoised denoised = denoise(picture, *request.denoiser);
+  for (int y = 0; y < picture.image.height; ++y)
+    for (int x = 0; x < picture.image.width; ++x)
+      std::copy_n(denoised.picture.pixel(x, y), 3, picture.image.pixel(x, y));
+  metadata.merge(denoised_metadata(*request.denoiser, denoised.error));
+  return denoised;
 }
 
 /// `picture` has the colour first and then the layers asked for, which only .exr files get.
@@ -124,13 +137,17 @@ ExitCode run_render(const RenderFlags& flags, const std::string& command_line) {
   warn_of_bad_samples(result, flags, log);
 
   watch.lap();
-  write_pictures(request, with_layers(result.film, request.layers, scene, camera, report.options),
-                 image_metadata(report, flags, result));
+  LayeredImage picture = with_layers(result.film, request.layers, scene, camera, report.options);
+  Metadata metadata = image_metadata(report, flags, result);
+  const auto denoised = denoise_if_asked(request, picture, metadata);
+  write_pictures(request, picture, metadata);
   report.output_seconds = watch.lap();
-  const auto stats = stats_json(report, flags, result, log);
+  auto stats = stats_json(report, flags, result, log);
+  if (denoised) stats["denoised"] = denoised_json(*request.denoiser, denoised->error);
   if (!flags.stats.empty()) write_text_file(flags.stats, to_text(stats) + "\n");
   if (!flags.report.empty()) write_text_file(flags.report, report_page(stats, result.film, request.display));
   if (!flags.quiet) fmt::print("{}\n", summary_line(report, flags, result));
+  if (!flags.quiet && denoised) fmt::print("{}\n", denoised_text(*request.denoiser, denoised->error));
   return result.reason == StopReason::interrupted ? ExitCode::stopped : ExitCode::done;
 }
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "apps/denoising.h"
 #include "apps/flags.h"
 #include "core/base/error.h"
 #include "core/base/names.h"
@@ -102,6 +103,10 @@ void add_output_flags(CLI::App& command, RenderFlags& flags) {
       .add_option("--aov,--layers", flags.layers,
                   "layers of the .exr beside its colour: error,albedo,...; 'help' lists them, 'all' is all")
       ->type_name("LIST");
+  command
+      .add_option("--denoise", flags.denoise,
+                  "filter the noise out before writing; 'help' lists the filters (docs/denoise.md)")
+      ->type_name("FILTER");
   command.add_option("--exposure", flags.display.exposure, "stops, for PNG and JPEG")
       ->check(real_number(-100, 100))
       ->type_name("EV");
@@ -134,13 +139,14 @@ void print_layers() {
                fmt::join(layer.channels.begin(), layer.channels.begin() + layer.channel_count(), ", "));
 }
 
-/// Only OpenEXR holds more than a picture's colour.
+/// Only OpenEXR holds more than a picture's colour. Denoising brings the layers that it uses.
 std::vector<Layer> choose_layers(const RenderFlags& flags) {
-  if (flags.layers.empty()) return {};
-  if (std::all_of(flags.outputs.begin(), flags.outputs.end(), is_display_file))
+  if (!flags.layers.empty() && std::all_of(flags.outputs.begin(), flags.outputs.end(), is_display_file))
     throw Error(ErrorKind::usage, {}, "--aov",
                 "only an .exr can hold layers; add -o FILE.exr, which may be given beside other outputs");
-  return find_layers(flags.layers);
+  std::string list = flags.layers;
+  if (!flags.denoise.empty()) list += (list.empty() ? "" : ",") + std::string(layers_for_denoising);
+  return find_layers(list);
 }
 
 ProgressMode parse_progress(const RenderFlags& flags) {
@@ -275,6 +281,8 @@ bool print_requested_list(const RenderFlags& flags) {
     print_table(accelerators());
   } else if (flags.show == "help") {
     for (const auto& name : raycast_shows()) fmt::print("{}\n", name);
+  } else if (flags.denoise == "help") {
+    print_table(denoisers());
   } else if (flags.layers == "help") {
     print_layers();
   } else if (flags.display.view == "help") {
@@ -299,6 +307,7 @@ RenderRequest check_render_flags(const RenderFlags& flags) {
   request.options = make_options(flags);
   request.progress = parse_progress(flags);
   request.layers = choose_layers(flags);
+  if (!flags.denoise.empty()) request.denoiser = &find_by_name(denoisers(), "filter", flags.denoise);
   if (request.options.width > 0) check_picture_size(request.options, request.layers);
   request.display = choose_display(flags);
   for (const auto& path : flags.outputs) check_writable_image(path);

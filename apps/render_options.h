@@ -7,6 +7,7 @@
 
 #include "apps/commands.h"
 #include "core/base/quantities.h"
+#include "core/image/denoise.h"
 #include "core/image/display.h"
 #include "integrators/integrator.h"
 #include "integrators/layers.h"
@@ -40,7 +41,8 @@ struct RenderFlags {
   float environment_rotate = 0;  ///< degrees
   float environment_scale = 1;
 
-  std::string layers;  ///< --aov; empty: none
+  std::string layers;   ///< --aov; empty: none
+  std::string denoise;  ///< filter; empty: none
   DisplayOptions display;
   std::string progress = "auto";
   std::string stats, report;
@@ -54,6 +56,7 @@ struct RenderRequest {
   RenderOptions options;  ///< width 0: not given
   ProgressMode progress = ProgressMode::automatic;
   std::vector<Layer> layers;
+  const Denoiser* denoiser = nullptr;  ///< null: none
   DisplayOptions display;
   std::shared_ptr<const EnvironmentDescription> environment;  ///< null: the scene's own
 };

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "core/image/image.h"
+
+namespace vernier {
+
+/// A noisy picture and what is known of it; all of one size, three channels each. Layers that are absent
+/// guide nothing.
+struct NoisyImage {
+  Image color;                       ///< scene-linear Rec.709
+  std::optional<Image> error = {};   ///< standard error of each value of `color`; else estimated from it
+  std::optional<Image> albedo = {};  ///< reflectance: `color` is filtered divided by it, to keep texture
+  std::optional<Image> normal = {};  ///< unit vectors: pixels that face elsewhere are not mixed
+};
+
+/// One line of the table of denoisers. `filter` is a pure function: equal input gives equal bits on any
+/// number of threads. Nothing is clamped; pixels that are not finite, or beyond 1e18, are replaced by their
+/// neighbours' mean first. Throws Error(usage) when sizes differ.
+struct Denoiser {
+  std::string_view name;
+  std::string_view description;
+  Image (*filter)(const NoisyImage&);
+};
+
+/// All denoisers of this build (core/image/denoise.cpp).
+std::span<const Denoiser> denoisers();
+
+/// The relative RMSE of a picture, sqrt(mean((x - r)^2 / (r^2 + 0.01))), with the ends of a 95 % interval.
+struct DenoisedError {
+  double noisy = 0;  ///< before denoising
+  double rel_rmse = 0, low = 0, high = 0;
+};
+
+/// A picture denoised as two halves, so that its own error, what the filter blurs included, is known.
+struct DenoisedHalves {
+  Image picture;  ///< mean of the two filtered halves
+  DenoisedError error;
+};
+
+/// Filters each half by itself. The halves must be independent and of one expectation; layers may be shared.
+/// docs/denoise.md says how the error is known. Throws Error(usage) when sizes differ.
+DenoisedHalves denoise_halves(const Denoiser& denoiser, const NoisyImage& first, const NoisyImage& second);
+
+}  // namespace vernier

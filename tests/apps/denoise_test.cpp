@@ -1,0 +1,106 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/image/denoise.h"
+#include "core/image/image_io.h"
+#include "core/image/metrics.h"
+#include "tests/support/process.h"
+
+namespace vernier::test {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string cornell_box = VERNIER_SOURCE_DIR "/tests/scenes/cornell_box.gltf";
+
+class DenoiseCommand : public testing::Test {
+ protected:
+  ProcessResult render(const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"render", cornell_box, "--progress", "none", "--size", "64x64"};
+    arguments.insert(arguments.end(), {"-o", folder_.file(name)});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_vernier(arguments);
+  }
+  ProcessResult denoise(const std::string& from, const std::string& to,
+                        const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"denoise", folder_.file(from), "-o", folder_.file(to)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_vernier(arguments);
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(DenoiseCommand, EveryFilterLowersTheErrorAndSaysSo) {
+  ASSERT_EQ(render("noisy.exr", {"--spp", "8", "--aov", "error,half,albedo,normal"}).exit_code, 0);
+  ASSERT_EQ(render("truth.exr", {"--spp", "192", "--seed", "5"}).exit_code, 0);
+  const Image truth = read_image(folder_.file("truth.exr")), noisy = read_image(folder_.file("noisy.exr"));
+  const double before = difference(noisy, truth).rel_mse;
+  for (const Denoiser& denoiser : denoisers()) {
+    const ProcessResult result = denoise("noisy.exr", "a.exr", {"--filter", std::string(denoiser.name)});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("denoised by " + std::string(denoiser.name) + ": error "));
+    const LayeredImage file = read_layers(folder_.file("a.exr"));
+    const double after = difference(file.rgb(), truth).rel_mse;
+    EXPECT_LT(after, before / 1.5) << denoiser.name;
+    EXPECT_EQ(file.metadata.at("vernier:denoiser"), denoiser.name);
+    EXPECT_EQ(file.channel_names, (std::vector<std::string>{"R", "G", "B"}));
+    EXPECT_THAT(file.metadata.at("vernier:denoiseCommand"), HasSubstr("denoise"));
+  }
+}
+
+TEST_F(DenoiseCommand, RenderDoesTheSame) {
+  const ProcessResult plain = render("noisy.exr", {"--spp", "8", "--aov", "error,half,albedo,normal"});
+  const ProcessResult result = render("a.exr", {"--spp", "8", "--denoise", "nlm", "-o", folder_.file("a.png"),
+                                                "--stats", folder_.file("s.json")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("denoised by nlm: error "));
+  EXPECT_THAT(plain.out, testing::Not(HasSubstr("denoised")));
+  ASSERT_EQ(denoise("noisy.exr", "b.exr", {"--filter", "nlm", "--threads", "1"}).exit_code, 0);
+  const LayeredImage rendered = read_layers(folder_.file("a.exr"));
+  const Image denoised = read_image(folder_.file("b.exr")), noisy = read_image(folder_.file("noisy.exr"));
+  EXPECT_EQ(rendered.rgb().values, denoised.values);
+  EXPECT_NE(rendered.rgb().values, noisy.values);
+  EXPECT_TRUE(rendered.layer("half1")) << "what it was made from is still there";
+  const auto stats = nlohmann::json::parse(read_file(folder_.file("s.json")));
+  EXPECT_EQ(stats["denoised"]["filter"], "nlm");
+  EXPECT_LT(stats["denoised"]["rel_rmse"], stats["denoised"]["rel_rmse_before"]);
+}
+
+TEST_F(DenoiseCommand, OnePictureAloneHasNoErrorToTell) {
+  ASSERT_EQ(render("noisy.exr", {"--spp", "16"}).exit_code, 0);
+  const ProcessResult result = denoise("noisy.exr", "a.exr");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("not known"));
+  // With one sample a pixel the second half is empty, and the picture not the mean of the two.
+  ASSERT_EQ(render("one.exr", {"--spp", "1", "--denoise", "gaussian"}).exit_code, 0);
+  ASSERT_EQ(render("raw.exr", {"--spp", "1"}).exit_code, 0);
+  const Image denoised = read_image(folder_.file("one.exr")), raw = read_image(folder_.file("raw.exr"));
+  double sum = 0, expected = 0;
+  for (size_t i = 0; i < raw.values.size(); ++i) {
+    sum += denoised.values[i];
+    expected += raw.values[i];
+  }
+  EXPECT_NEAR(sum / expected, 1, 0.2);
+}
+
+TEST_F(DenoiseCommand, UsageErrors) {
+  write_exr(folder_.file("a.exr"), Image(4, 4, 3), {"R", "G", "B"}, {});
+  write_image8(folder_.file("a.png"), Image8(4, 4, 3), {});
+  EXPECT_EQ(run_vernier({"denoise"}).exit_code, 2);
+  EXPECT_EQ(run_vernier({"denoise", folder_.file("a.exr")}).exit_code, 2);
+  const ProcessResult unknown = denoise("a.exr", "b.exr", {"--filter", "bilatral"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'bilateral'"));
+  EXPECT_EQ(denoise("a.exr", "b.png").exit_code, 2);
+  EXPECT_EQ(denoise("a.png", "b.exr").exit_code, 3);
+  EXPECT_EQ(denoise("missing.exr", "b.exr").exit_code, 3);
+  EXPECT_EQ(run_vernier({"denoise", "--filter", "help"}).exit_code, 0);
+  EXPECT_EQ(run_vernier({"render", "--denoise", "help"}).exit_code, 0);
+  EXPECT_EQ(render("c.exr", {"--denoise", "bilatral"}).exit_code, 2);
+  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"a.exr", "a.png"}));
+}
+
+}  // namespace
+}  // namespace vernier::test
