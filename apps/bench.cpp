@@ -18,6 +18,7 @@ namespace {
 constexpr void (*benches[])(CLI::App&, Program&) = {
     register_bench_rays,
     register_bench_convergence,
+    register_bench_stability,
 };
 
 }  // namespace

@@ -4,11 +4,13 @@
 #include <atomic>
 #include <bit>
 #include <chrono>
+#include <deque>
 #include <mutex>
 
 #include "core/base/error.h"
 #include "scene/accel/instance.h"
 #include "scene/accel/query.h"
+#include "scene/accel/triangle_set.h"
 
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
@@ -99,20 +101,21 @@ void collect_hit(const RTCFilterFunctionNArguments* args) {
   args->valid[0] = 0;
 }
 
-/// Embree's interval is closed in its robust mode, ours is open: shrink by the last bit at each end. Zero
-/// goes to the smallest normal number, since threads that flush denormals would read a denormal as zero
-/// again. The end of an infinite ray becomes the largest finite number, so that an overflowed t is no hit.
+/// Embree's interval is closed in its robust mode, in its fast mode above only, and ours is open: shrink by
+/// the last bit at each closed end. Zero goes to the smallest normal number, since threads that flush
+/// denormals would read a denormal as zero again. The end of an infinite ray becomes the largest finite
+/// number, so that an overflowed t is no hit.
 float above(float t_min) {
   constexpr float smallest = std::numeric_limits<float>::min();
   return t_min < smallest ? smallest : std::bit_cast<float>(std::bit_cast<uint32_t>(t_min) + 1);
 }
 
-RTCRayHit embree_ray(const Ray& ray) {
+RTCRayHit embree_ray(const Ray& ray, bool robust) {
   RTCRayHit rayhit;
   rayhit.ray.org_x = ray.origin.x;
   rayhit.ray.org_y = ray.origin.y;
   rayhit.ray.org_z = ray.origin.z;
-  rayhit.ray.tnear = above(ray.t_min);
+  rayhit.ray.tnear = robust ? above(ray.t_min) : std::max(ray.t_min, 0.f);
   rayhit.ray.dir_x = ray.direction.x;
   rayhit.ray.dir_y = ray.direction.y;
   rayhit.ray.dir_z = ray.direction.z;
@@ -176,16 +179,22 @@ class EmbreeAccelerator final : public Accelerator {
   RTCError error_ = RTC_ERROR_NONE;
   std::string error_text_;
   const HitFilter* filter_;
+  bool robust_;
   float farthest_origin_ = 1e18f;
   AcceleratorStats stats_;
   std::vector<std::vector<Vec3f>> baked_;
+  std::deque<std::vector<Triangle>>
+      hittable_;  ///< index lists of meshes some of whose triangles are left out
   DevicePtr device_;
   std::vector<ScenePtr> mesh_scenes_;  ///< two a mesh: unfiltered, filtered; null where not needed
   ScenePtr scene_;
 };
 
 EmbreeAccelerator::EmbreeAccelerator(const Geometry& geometry, RTCSceneFlags flags)
-    : filter_(geometry.filter), device_(rtcNewDevice(nullptr)), mesh_scenes_(2 * geometry.meshes.size()) {
+    : filter_(geometry.filter),
+      robust_(flags & RTC_SCENE_FLAG_ROBUST),
+      device_(rtcNewDevice(nullptr)),
+      mesh_scenes_(2 * geometry.meshes.size()) {
   if (!device_)
     throw Error(ErrorKind::memory,
                 "Embree cannot start (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
@@ -198,6 +207,7 @@ EmbreeAccelerator::EmbreeAccelerator(const Geometry& geometry, RTCSceneFlags fla
   stats_.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   stats_.bytes = static_cast<size_t>(bytes_.load());
   for (const auto& positions : baked_) stats_.bytes += positions.size() * sizeof(Vec3f);
+  for (const auto& triangles : hittable_) stats_.bytes += triangles.size() * sizeof(Triangle);
 }
 
 void EmbreeAccelerator::add_instance(uint32_t id, const Geometry& geometry, RTCSceneFlags flags) {
@@ -238,11 +248,15 @@ void EmbreeAccelerator::commit(RTCScene scene) {
 }
 
 void EmbreeAccelerator::attach_mesh(RTCScene scene, const GeometryMesh& mesh, uint32_t id, bool filtered) {
+  std::span<const Triangle> triangles = mesh.triangles;
+  // Its robust mode would hit triangles without area; those with such indices it leaves out.
+  if (auto hittable = without_unhittable(mesh); !hittable.empty())
+    triangles = hittable_.emplace_back(std::move(hittable));
   RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0,
                              sizeof(Vec3f), mesh.positions.size());
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
-                             sizeof(Triangle), mesh.triangles.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
+                             sizeof(Triangle), triangles.size());
   if (filtered) {
     rtcSetGeometryIntersectFilterFunction(geometry, filter_hit);
     rtcSetGeometryOccludedFilterFunction(geometry, filter_hit);
@@ -265,7 +279,7 @@ void EmbreeAccelerator::attach_placed(RTCScene mesh_scene, const Transform& to_w
 }
 
 inline std::optional<RawHit> EmbreeAccelerator::closest(const ScaledRay& scaled, const Ray& world) const {
-  RTCRayHit rayhit = embree_ray(scaled.ray);
+  RTCRayHit rayhit = embree_ray(scaled.ray, robust_);
   Query query{{}, &world, scaled.t_scale, filter_, nullptr};
   intersect(scene_.get(), rayhit, query);
   if (rayhit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
@@ -273,7 +287,7 @@ inline std::optional<RawHit> EmbreeAccelerator::closest(const ScaledRay& scaled,
 }
 
 inline bool EmbreeAccelerator::occluded(const ScaledRay& scaled, const Ray& world) const {
-  RTCRayHit rayhit = embree_ray(scaled.ray);
+  RTCRayHit rayhit = embree_ray(scaled.ray, robust_);
   Query query{{}, &world, scaled.t_scale, filter_, nullptr};
   occlude(scene_.get(), rayhit.ray, query);
   return rayhit.ray.tfar < 0;
@@ -283,7 +297,7 @@ void EmbreeAccelerator::all_hits(const Ray& ray, std::vector<RawHit>& sorted) co
   sorted.clear();
   const auto scaled = scaled_to_unit(ray);
   if (!scaled || !is_plain(scaled->ray)) return;
-  RTCRayHit rayhit = embree_ray(scaled->ray);
+  RTCRayHit rayhit = embree_ray(scaled->ray, robust_);
   Query query{{}, &ray, scaled->t_scale, filter_, &sorted};
   intersect(scene_.get(), rayhit, query, collect_hit);
   sort_hits(sorted);

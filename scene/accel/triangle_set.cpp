@@ -1,6 +1,8 @@
 #include "scene/accel/triangle_set.h"
 
 #include <algorithm>
+#include <atomic>
+#include <limits>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -68,6 +70,22 @@ void TriangleSet::reload(TriangleBlock& block) const {
       for (int axis = 0; axis < 3; ++axis)
         block.vertex[vertex][axis][lane] = part.mesh.positions[indices[vertex]][axis];
   }
+}
+
+std::vector<Triangle> without_unhittable(const GeometryMesh& mesh) {
+  const auto& p = mesh.positions;
+  const auto is_out = [&](const Triangle& t) { return !is_hittable(p[t[0]], p[t[1]], p[t[2]]); };
+  std::atomic<bool> any = false;
+  constexpr size_t triangles_a_task = 1 << 14;
+  parallel_for((mesh.triangles.size() + triangles_a_task - 1) / triangles_a_task, [&](size_t task) {
+    const auto rest = mesh.triangles.subspan(task * triangles_a_task);
+    if (std::ranges::any_of(rest.first(std::min(rest.size(), triangles_a_task)), is_out)) any = true;
+  });
+  if (!any) return {};
+  std::vector<Triangle> triangles(mesh.triangles.begin(), mesh.triangles.end());
+  for (Triangle& t : triangles)
+    if (is_out(t)) t.fill(std::numeric_limits<uint32_t>::max());
+  return triangles;
 }
 
 Bounds bounds_of(const TriangleBlock& block) {

@@ -40,6 +40,10 @@ class TriangleSet {
   uint32_t size_ = 0;
 };
 
+/// The triangles of a mesh, those that cannot be hit replaced by indices beyond all vertices; empty when
+/// there are none such.
+std::vector<Triangle> without_unhittable(const GeometryMesh& mesh);
+
 Bounds bounds_of(const TriangleBlock& block);
 
 }  // namespace vernier

@@ -39,6 +39,24 @@ TEST(BenchRays, TimesAcceleratorsBesideEmbree) {
   }
 }
 
+TEST(BenchStability, WritesTheTableAsJsonAndMarkdown) {
+  test::TemporaryFolder folder;
+  const std::string file = folder.file("s.json"), table = folder.file("s.md");
+  const auto result =
+      test::run_vernier({"bench", "stability", "--rays", "2000", "--accelerator", "bvh,embree-fast",
+                         "--cases", "edge-100,gap,largest-size", "--json", file, "--markdown", table});
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("edge-100"));
+  const auto report = json::parse(test::read_file(file));
+  ASSERT_EQ(report["cases"].size(), 3u);
+  const auto& edge = report["cases"][0]["accelerators"];
+  EXPECT_EQ(edge["bvh"]["events"], 0);
+  EXPECT_EQ(edge["bvh"]["trials"], 2000);
+  EXPECT_GT(edge["embree-fast"]["value"], 10'000);
+  EXPECT_EQ(report["cases"][1]["accelerators"]["bvh"]["value"], 16);
+  EXPECT_THAT(test::read_file(table), HasSubstr("| case | figure | rays | bvh | embree-fast |"));
+}
+
 TEST(Bench, MisuseIsOneLineAndNothingIsWritten) {
   test::TemporaryFolder folder;
   const auto expect_error = [](const std::vector<std::string>& arguments, int code, const std::string& part) {
@@ -49,6 +67,7 @@ TEST(Bench, MisuseIsOneLineAndNothingIsWritten) {
   };
   expect_error({"bench"}, usage, "vernier bench --help");
   expect_error({"bench", "ray", cornell_box}, usage, "rays");
+  expect_error({"bench", "stability", "--cases", "edge"}, usage, "edge-1");
   expect_error({"bench", "rays"}, usage, "which scene?");
   expect_error({"bench", "rays", cornell_box, "--accelerator", "bhv"}, usage, "bvh");
   expect_error({"bench", "rays", folder.file("none.glb"), "--json", folder.file("x.json")}, input,

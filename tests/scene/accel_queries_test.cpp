@@ -1,5 +1,7 @@
 #include "scene/accel/bvh.h"
 #include "scene/accel/proof/agreement.h"
+#include "scene/accel/proof/invariance.h"
+#include "scene/accel/proof/limits.h"
 #include "tests/scene/accel_support.h"
 
 namespace vernier {
@@ -73,6 +75,15 @@ TEST_P(Queries, TakesTheIntervalAsOpen) {
   EXPECT_EQ(t(infinity, infinity), 0);
   EXPECT_EQ(t(nan, infinity), 0);
   EXPECT_EQ(t(0, nan), 0);
+}
+
+TEST_P(Queries, TakesTheIntervalAsOpenToTheLastBit) {
+  const Count errors = interval_errors(GetParam().build, 20'000, 1);
+  // Embree's fast mode compares t times the determinant, which rounds.
+  if (GetParam().name == "embree-fast")
+    EXPECT_LT(errors.per_million(), 500'000);
+  else
+    EXPECT_EQ(errors.events, 0u);
 }
 
 TEST_P(Queries, DoesNotMeetTheSurfaceItStartsOn) {
@@ -159,20 +170,29 @@ TEST_P(Queries, DropsTrianglesThatAreNotFinite) {
 }
 
 TEST_P(Queries, SurvivesDenormalAndHugeCoordinates) {
-  if (GetParam().watertight != Watertight::at_edges_and_vertices) GTEST_SKIP() << "makes no such claim";
   for (const float size : {1e-40f, 1e-20f, 1e9f, 1e12f, 1e15f, 1e17f}) {
     Soup soup;
     soup.add({{0, 0, 0}, {size, 0, 0}, {0, size, 0}}, {{0, 1, 2}});
-    const auto accelerator = build(soup);
-    const auto hit = accelerator->closest(make_ray({.25f * size, .25f * size, size}, down));
-    if (size >= 1e-12f && size <= 1e17f && size > 1e-19f) {
-      ASSERT_TRUE(hit) << size;
-      EXPECT_NEAR(hit->t / size, 1, 1e-6) << size;
-      EXPECT_NEAR(hit->u, .25, 1e-6) << size;
-    }
-    const auto beside = accelerator->closest(make_ray({1.1f * size, .25f * size, size}, down));
+    const auto beside = build(soup)->closest(make_ray({1.1f * size, .25f * size, size}, down));
     EXPECT_FALSE(beside && std::abs(beside->t / size - 1) < 1e-3f) << size;
   }
+  // Embree multiplies three lengths where the reference multiplies two.
+  const bool reference = GetParam().watertight == Watertight::at_edges_and_vertices;
+  for (const bool flush_denormals : {false, true}) {
+    const SizeRange sizes = sizes_hit(GetParam().build, flush_denormals);
+    EXPECT_LE(sizes.smallest, reference ? 1.01e-19 : 1.01e-9);
+    EXPECT_GE(sizes.largest, reference ? .99e17 : .99e12);
+  }
+}
+
+TEST_P(Queries, ScalesByPowersOfTwoToTheBit) {
+  const Count changed = changed_by_scaling(GetParam().build, 20'000, 1);
+  EXPECT_EQ(changed.events, 0u);
+  EXPECT_EQ(changed.trials, 20'000u);
+}
+
+TEST_P(Queries, HitsNothingWhereNothingCanBeHit) {
+  EXPECT_EQ(phantom_hits(GetParam().build, 20'000, 1).events, 0u);
 }
 
 TEST_P(Queries, ScalesWithDirectionsOfAnyLength) {
@@ -188,49 +208,20 @@ TEST_P(Queries, ScalesWithDirectionsOfAnyLength) {
 }
 
 TEST_P(Queries, IgnoresTheSignsOfZeros) {
-  // A unit box; rays with zeros in their directions from its faces, edges, corners and beyond.
-  Soup soup;
-  soup.add({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}},
-           {{0, 2, 1},
-            {1, 2, 3},
-            {4, 5, 6},
-            {5, 7, 6},
-            {0, 1, 4},
-            {1, 5, 4},
-            {2, 6, 3},
-            {3, 6, 7},
-            {0, 4, 2},
-            {2, 4, 6},
-            {1, 3, 5},
-            {3, 7, 5}});
-  const auto accelerator = build(soup);
-  const float places[] = {-1, 0, .5f, 1, 2}, steps[] = {-1, 0, 1};
-  for (const float x : places)
-    for (const float y : places)
-      for (const float z : places)
-        for (const float dx : steps)
-          for (const float dy : steps)
-            for (const float dz : steps) {
-              if (dx == 0 && dy == 0 && dz == 0) continue;
-              const auto plain = accelerator->closest(make_ray({x, y, z}, {dx, dy, dz}));
-              for (int signs = 1; signs < 8; ++signs) {
-                Vec3f d{dx, dy, dz};
-                for (int axis = 0; axis < 3; ++axis)
-                  if (d[axis] == 0 && (signs >> axis & 1)) d[axis] = -0.f;
-                ASSERT_TRUE(same_bits(plain, accelerator->closest(make_ray({x, y, z}, d))))
-                    << x << ' ' << y << ' ' << z << " along " << dx << ' ' << dy << ' ' << dz;
-              }
-            }
+  const Count changed = changed_by_signed_zeros(GetParam().build);
+  EXPECT_EQ(changed.events, 0u);
+  EXPECT_GT(changed.trials, 20'000u);
 }
 
 TEST_P(Queries, StaysWithinTheForwardErrorBound) {
-  if (GetParam().watertight != Watertight::at_edges_and_vertices) GTEST_SKIP() << "makes no such claim";
+  // Embree's robust mode weighs by its edge functions' rounded sum, which costs it u and v of rays from afar.
+  const double bound = GetParam().name == "embree" ? 20 : 1;
   for (const float needle : {1.f, .1f}) {
     const HitErrors errors = hit_errors(GetParam().build, needle, 0, 30'000, 5);
     EXPECT_EQ(errors.wrong.events, 0u) << needle;
     EXPECT_LE(errors.t, 1) << needle;
-    EXPECT_LE(errors.u, 1) << needle;
-    EXPECT_LE(errors.v, 1) << needle;
+    EXPECT_LE(errors.u, bound) << needle;
+    EXPECT_LE(errors.v, bound) << needle;
   }
 }
 

@@ -22,13 +22,13 @@ std::vector<SpawnCase> spawn_cases() {
 class SpawnedRays : public EveryAccelerator {};
 
 TEST_P(SpawnedRays, DoesNotHitWhatARayLeaves) {
-  // The tests that are not watertight report points beside slivers, which no bound on rounding covers.
-  if (GetParam().watertight != Watertight::at_edges_and_vertices)
-    GTEST_SKIP() << "hits slivers beside their edges";
+  // Tests that are not watertight now and then report a point beside a sliver, which no bound on rounding
+  // covers.
+  const bool none = GetParam().watertight == Watertight::at_edges_and_vertices;
   for (const SpawnCase& c : spawn_cases()) {
     const Count hits = self_hits(GetParam().build, c, rays, 1);
-    EXPECT_EQ(hits.events, 0u) << "scale " << c.scale << " offset " << c.offset << " instanced "
-                               << c.instanced;
+    EXPECT_LE(hits.events, none ? 0u : 10u)
+        << "scale " << c.scale << " offset " << c.offset << " instanced " << c.instanced;
     EXPECT_GT(hits.trials, rays / 10);
   }
 }

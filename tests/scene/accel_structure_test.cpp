@@ -1,8 +1,10 @@
+#include "core/base/names.h"
 #include "core/base/parallel.h"
 #include "scene/accel/brute_force.h"
 #include "scene/accel/bvh.h"
 #include "scene/accel/octree.h"
 #include "scene/accel/proof/agreement.h"
+#include "scene/accel/proof/structure.h"
 #include "tests/scene/accel_support.h"
 
 namespace vernier {
@@ -48,70 +50,14 @@ TEST(OwnAccelerators, AnswerAlikeToTheBit) {
   }
 }
 
-/// Chosen so that a bad tree builder loops, overflows its stack or builds a list.
-struct Stress {
-  std::string name;
-  void (*fill)(Soup&);
-  float size;
-};
-
-void same_centroid(Soup& soup) {
-  Dice dice(1, 0);
-  std::vector<Vec3f> positions;
-  std::vector<Triangle> triangles;
-  for (uint32_t i = 0; i < 20'000; ++i) {
-    const Vec3f a = dice.direction(), b = dice.direction();
-    positions.insert(positions.end(), {a, b, -(a + b)});
-    triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
-  soup.add(std::move(positions), std::move(triangles));
-}
-
-void copies_of_one_triangle(Soup& soup) {
-  soup.add({{-1, -1, 0}, {1, -1, .5f}, {0, 1, 0}}, std::vector<Triangle>(20'000, Triangle{0, 1, 2}));
-}
-
-void long_diagonals(Soup& soup) {
-  std::vector<Vec3f> positions;
-  std::vector<Triangle> triangles;
-  for (uint32_t i = 0; i < 2000; ++i) {
-    const float x = float(i) * 1e-3f;
-    positions.insert(positions.end(), {{x - 1, -1, -1}, {x - .999f, -1, -1}, {1, 1, 1}});
-    triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
-  soup.add(std::move(positions), std::move(triangles));
-}
-
-void exponential_spacing(Soup& soup) {
-  std::vector<Vec3f> positions;
-  std::vector<Triangle> triangles;
-  for (int i = -120; i <= 60; ++i) {
-    const float x = std::ldexp(1.f, i);
-    const auto first = static_cast<uint32_t>(positions.size());
-    positions.insert(positions.end(), {{x, 0, 0}, {1.25f * x, 0, 0}, {x, .25f * x, .125f * x}});
-    triangles.push_back({first, first + 1, first + 2});
-  }
-  soup.add(std::move(positions), std::move(triangles));
-}
-
-void one_triangle(Soup& soup) { soup.add({{-1, -1, 0}, {1, -1, .5f}, {0, 1, 0}}, {{0, 1, 2}}); }
-
-void tiny_in_huge(Soup& soup) {
-  Dice dice(2, 0);
-  add_blob(soup, dice, 1, 1e6f, {0, 0, 0});
-  add_blob(soup, dice, 2, 1e-3f, {.5f, .5f, .5f});
-}
-
-const Stress stresses[] = {
-    {"SameCentroid", same_centroid, 1},   {"CopiesOfOneTriangle", copies_of_one_triangle, 1},
-    {"LongDiagonals", long_diagonals, 1}, {"ExponentialSpacing", exponential_spacing, 4},
-    {"OneTriangle", one_triangle, 1},     {"TinyInHuge", tiny_in_huge, 1e6f}};
+/// Enough triangles to hurt a bad builder, few enough for brute force.
+uint32_t test_size(const Stress& stress) { return std::min(stress.triangles, 20'000u); }
 
 class StructureStress : public testing::TestWithParam<Stress> {};
 
 TEST_P(StructureStress, ChangesNoAnswer) {
   Soup soup;
-  GetParam().fill(soup);
+  GetParam().fill(soup, test_size(GetParam()));
   for (const auto build : {build_bvh, build_octree})
     expect_brute_force_answers(*build(soup.geometry()), soup, GetParam().size, 300);
 }
@@ -119,7 +65,7 @@ TEST_P(StructureStress, ChangesNoAnswer) {
 TEST_P(StructureStress, IsHeldByEveryAccelerator) {
   for (const auto& entry : accelerators()) {
     Soup soup;
-    GetParam().fill(soup);
+    GetParam().fill(soup, test_size(GetParam()));
     const auto reference = build_bvh(soup.geometry()), accelerator = entry.build(soup.geometry());
     Dice dice(12, 0);
     int misses = 0;
@@ -131,12 +77,13 @@ TEST_P(StructureStress, IsHeldByEveryAccelerator) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, StructureStress, testing::ValuesIn(stresses),
-                         [](const auto& stress) { return stress.param.name; });
+INSTANTIATE_TEST_SUITE_P(Scenes, StructureStress, testing::ValuesIn(stresses()),
+                         [](const auto& stress) { return std::string(stress.param.name); });
 
 TEST(Bvh, StaysShallowWhereEverySplitPeelsOneTriangle) {
   Soup soup;
-  exponential_spacing(soup);
+  const Stress& exponential = find_by_name(stresses(), "stress", "ExponentialSpacing");
+  exponential.fill(soup, exponential.triangles);
   const Bvh bvh(soup.geometry());
   const auto cost = bvh.closest_cost(make_ray({-1, .01f, .005f}, {1, 1e-5f, 1e-5f}));
   ASSERT_TRUE(cost);
@@ -211,8 +158,8 @@ FOR_EVERY_ACCELERATOR(LargeMeshes);
 
 TEST(OwnAccelerators, PickTheFirstOfCoincidingTriangles) {
   Soup soup;
-  copies_of_one_triangle(soup);
-  copies_of_one_triangle(soup);
+  for (int i = 0; i < 2; ++i)
+    soup.add({{-1, -1, 0}, {1, -1, .5f}, {0, 1, 0}}, std::vector<Triangle>(20'000, Triangle{0, 1, 2}));
   for (const auto build : {build_bvh, build_octree}) {
     const auto hit = build(soup.geometry())->closest(make_ray({0, 0, 3}, {0, 0, -1}));
     ASSERT_TRUE(hit);

@@ -17,27 +17,37 @@ constexpr float distances[] = {1, 100, 1e4f};
 
 class Watertightness : public EveryAccelerator {};
 
-TEST_P(Watertightness, HoldsAtEdges) {
-  if (GetParam().watertight == Watertight::nowhere) GTEST_SKIP() << "makes no such claim";
-  for (const float distance : distances)
-    EXPECT_EQ(leaks_at_edges(GetParam().build, {distance, 1, {0, 0, 0}}, rays / 3, 1).events, 0u) << distance;
-  EXPECT_EQ(leaks_at_edges(GetParam().build, {10, 1, {500, -700, 300}}, rays / 10, 2).events, 0u);
-  EXPECT_EQ(leaks_at_edges(GetParam().build, {10, 1e6f, {0, 0, 0}}, rays / 10, 3).events, 0u);
+/// No leaks where the table claims so, and some where it does not: a claim that is too modest is wrong too.
+void expect_claim(bool claimed, const Count& leaks) {
+  testing::Test::RecordProperty("leaks_per_million", static_cast<int>(leaks.per_million()));
+  if (claimed)
+    EXPECT_EQ(leaks.events, 0u);
+  else
+    EXPECT_GT(leaks.events, 0u);
 }
 
-TEST_P(Watertightness, HoldsAtVertices) {
-  if (GetParam().watertight != Watertight::at_edges_and_vertices) GTEST_SKIP() << "makes no such claim";
+TEST_P(Watertightness, IsAsClaimedAtEdges) {
+  Count leaks;
   for (const float distance : distances)
-    EXPECT_EQ(leaks_at_vertices(GetParam().build, {distance, 1, {0, 0, 0}}, rays / 3, 4).events, 0u)
-        << distance;
-  EXPECT_EQ(leaks_at_vertices(GetParam().build, {10, 1, {500, -700, 300}}, rays / 10, 5).events, 0u);
-  EXPECT_EQ(leaks_at_vertices(GetParam().build, {10, 1e6f, {0, 0, 0}}, rays / 10, 6).events, 0u);
+    leaks += leaks_at_edges(GetParam().build, {distance, 1, {0, 0, 0}}, rays / 3, 1);
+  leaks += leaks_at_edges(GetParam().build, {10, 1, {500, -700, 300}}, rays / 10, 2);
+  leaks += leaks_at_edges(GetParam().build, {10, 1e6f, {0, 0, 0}}, rays / 10, 3);
+  expect_claim(GetParam().watertight >= Watertight::at_edges, leaks);
 }
 
-TEST_P(Watertightness, HoldsAllAroundAClosedSurface) {
-  if (GetParam().watertight != Watertight::at_edges_and_vertices) GTEST_SKIP() << "makes no such claim";
+TEST_P(Watertightness, IsAsClaimedAtVertices) {
+  Count leaks;
+  for (const float distance : distances)
+    leaks += leaks_at_vertices(GetParam().build, {distance, 1, {0, 0, 0}}, rays / 3, 4);
+  leaks += leaks_at_vertices(GetParam().build, {10, 1, {500, -700, 300}}, rays / 10, 5);
+  leaks += leaks_at_vertices(GetParam().build, {10, 1e6f, {0, 0, 0}}, rays / 10, 6);
+  expect_claim(GetParam().watertight >= Watertight::at_edges_and_vertices, leaks);
+}
+
+TEST_P(Watertightness, IsAsClaimedAllAroundAClosedSurface) {
   const uint64_t count = GetParam().name == "brute_force" ? rays / 300 : rays;
-  EXPECT_EQ(leaks_of_closed_surface(GetParam().build, count, 7).events, 0u);
+  expect_claim(GetParam().watertight >= Watertight::at_edges_and_vertices,
+               leaks_of_closed_surface(GetParam().build, count, 7));
 }
 
 INSTANTIATE_TEST_SUITE_P(Accelerators, Watertightness, testing::ValuesIn(accelerators()),

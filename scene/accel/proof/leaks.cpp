@@ -1,26 +1,11 @@
 #include "scene/accel/proof/leaks.h"
 
-#include <atomic>
-
-#include "core/base/parallel.h"
 #include "scene/accel/proof/soup.h"
 
 namespace vernier::proof {
 namespace {
 
 constexpr uint64_t rays_a_scene = 1000;
-
-/// Adds up what count(stream, rays) returns for streams of at most rays_a_scene rays, in parallel.
-template <typename CountScene>
-Count count_scenes(uint64_t rays, const CountScene& count_scene) {
-  std::atomic<uint64_t> events = 0, trials = 0;
-  parallel_for((rays + rays_a_scene - 1) / rays_a_scene, [&](size_t stream) {
-    const Count count = count_scene(stream, std::min(rays_a_scene, rays - stream * rays_a_scene));
-    events += count.events;
-    trials += count.trials;
-  });
-  return {events, trials};
-}
 
 /// Whether all triangles of the first instance show the same side to the direction, none at a grazing angle.
 bool all_face(const Soup& soup, const Vec3f& direction) {
@@ -70,8 +55,7 @@ constexpr unsigned blob_levels = 4;
 }  // namespace
 
 Count leaks_at_edges(BuildAccelerator build, const Aim& aim, uint64_t rays, uint64_t seed) {
-  return count_scenes(rays, [&](uint64_t stream, uint64_t count) {
-    Dice dice(seed, stream);
+  return count_portions(rays, rays_a_scene, seed, [&](Dice& dice, uint64_t count) {
     Soup soup;
     add_folded_quad(soup, dice, aim.size, aim.center);
     const Vec3f a = soup.positions(0)[1], b = soup.positions(0)[2];
@@ -81,8 +65,7 @@ Count leaks_at_edges(BuildAccelerator build, const Aim& aim, uint64_t rays, uint
 }
 
 Count leaks_at_vertices(BuildAccelerator build, const Aim& aim, uint64_t rays, uint64_t seed) {
-  return count_scenes(rays, [&](uint64_t stream, uint64_t count) {
-    Dice dice(seed, stream);
+  return count_portions(rays, rays_a_scene, seed, [&](Dice& dice, uint64_t count) {
     Soup soup;
     add_fan(soup, dice, aim.size, aim.center + dice.in_cube(aim.size));
     return aim_at(*build(soup.geometry()), soup, aim, dice, count, [&] { return soup.positions(0)[0]; });
@@ -94,8 +77,7 @@ Count leaks_of_closed_surface(BuildAccelerator build, uint64_t rays, uint64_t se
   Soup soup;
   add_blob(soup, shape, blob_levels, 1, {0, 0, 0});
   const auto accelerator = build(soup.geometry());
-  return count_scenes(rays, [&](uint64_t stream, uint64_t count) {
-    Dice dice(seed, stream);
+  return count_portions(rays, rays_a_scene, seed, [&](Dice& dice, uint64_t count) {
     Count leaks{0, count};
     for (uint64_t i = 0; i < count; ++i) {
       Ray ray;
@@ -112,8 +94,7 @@ Count parity_errors(BuildAccelerator build, uint64_t rays, uint64_t seed) {
   Soup soup;
   add_blob(soup, shape, blob_levels, 1, {0, 0, 0});
   const auto accelerator = build(soup.geometry());
-  return count_scenes(rays, [&](uint64_t stream, uint64_t count) {
-    Dice dice(seed, stream);
+  return count_portions(rays, rays_a_scene, seed, [&](Dice& dice, uint64_t count) {
     Count errors{0, count};
     std::vector<RawHit> hits;
     for (uint64_t i = 0; i < count; ++i) {

@@ -1,18 +1,11 @@
 #pragma once
 
-#include "scene/accel/accelerator.h"
+#include "scene/accel/proof/count.h"
 
 // Rays aimed where triangles meet. Random rays do not find leaks: they pass within rounding of an edge once
 // in millions.
 
 namespace vernier::proof {
-
-struct Count {
-  uint64_t events = 0, trials = 0;
-  double per_million() const { return trials ? 1e6 * double(events) / double(trials) : 0; }
-};
-
-using BuildAccelerator = std::unique_ptr<Accelerator> (*)(const Geometry&);
 
 /// How the rays are aimed: from `distance` times the size of the triangles, at geometry of size `size` about
 /// `center`.

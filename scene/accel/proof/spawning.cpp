@@ -1,8 +1,5 @@
 #include "scene/accel/proof/spawning.h"
 
-#include <atomic>
-
-#include "core/base/parallel.h"
 #include "core/math/frame.h"
 #include "scene/accel/proof/soup.h"
 #include "scene/geometry.h"
@@ -43,18 +40,6 @@ Vec3f leaving(const Vec3f& normal, float cosine, Dice& dice) {
   return frame.to_world({sine * std::cos(angle), sine * std::sin(angle), cosine});
 }
 
-template <typename CountScene>
-Count count_scenes(uint64_t rays, uint64_t seed, const CountScene& count_scene) {
-  std::atomic<uint64_t> events = 0, trials = 0;
-  parallel_for((rays + rays_a_scene - 1) / rays_a_scene, [&](size_t stream) {
-    Dice dice(seed, stream);
-    const Count count = count_scene(dice, std::min(rays_a_scene, rays - stream * rays_a_scene));
-    events += count.events;
-    trials += count.trials;
-  });
-  return {events, trials};
-}
-
 /// A ray at a random point inside triangle 0 from a few times its size away; empty when that is not what it
 /// hits.
 std::optional<SurfacePoint> point_on(const SceneGeometry& scene, const Accelerator& accelerator, float scale,
@@ -73,7 +58,7 @@ std::optional<SurfacePoint> point_on(const SceneGeometry& scene, const Accelerat
 }  // namespace
 
 Count self_hits(BuildAccelerator build, const SpawnCase& spawn_case, uint64_t rays, uint64_t seed) {
-  return count_scenes(rays, seed, [&](Dice& dice, uint64_t count) {
+  return count_portions(rays, rays_a_scene, seed, [&](Dice& dice, uint64_t count) {
     const float scale = spawn_case.scale;
     const Vec3f center = dice.direction() * (spawn_case.offset * scale);
     const Vec3f in_mesh = spawn_case.instanced ? dice.in_cube(scale) : center;
@@ -99,7 +84,7 @@ Count self_hits(BuildAccelerator build, const SpawnCase& spawn_case, uint64_t ra
 
 Count missed_gaps(BuildAccelerator build, const SpawnCase& spawn_case, unsigned gap, uint64_t rays,
                   uint64_t seed) {
-  return count_scenes(rays, seed, [&](Dice& dice, uint64_t count) {
+  return count_portions(rays, rays_a_scene, seed, [&](Dice& dice, uint64_t count) {
     const Vec3f center = dice.direction() * (spawn_case.offset * spawn_case.scale);
     // Coordinates in multiples of the ulp of the largest, so that the second sheet is moved exactly; sheets
     // many ulps wide, so that no ray leaves the gap at the side.
