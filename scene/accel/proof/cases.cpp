@@ -169,7 +169,7 @@ constexpr std::array table{
              [](const Entry& e, uint64_t) { return Figure(sizes_hit(e.build, true).smallest); }, 1},
     HardCase{"largest-size", "power of ten up to which triangles are hit (the more the better)",
              [](const Entry& e, uint64_t) { return Figure(sizes_hit(e.build, false).largest); }, 1},
-    HardCase{"scaling", "answers changed by scaling everything by 2^k, |k| <= 24, per 10^6",
+    HardCase{"scaling", "answers changed by scaling everything by 2^k, k from -24 to 24, per 10^6",
              [](const Entry& e, uint64_t n) { return Figure(changed_by_scaling(e.build, n, 18)); }, some},
     HardCase{"signed-zeros", "answers changed by the sign of zeros in directions, per 10^6",
              [](const Entry& e, uint64_t) { return Figure(changed_by_signed_zeros(e.build)); }, 1},
