@@ -1,6 +1,7 @@
 #pragma once
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -57,5 +58,15 @@ inline Float4 magnitude(const Float4& x) { return flipped(x, signs_of(x)); }
 inline void keep_greater(const Float8& a, Float8& b) { b = a > b ? a : b; }
 /// `a` where it is the smaller, else `b`: a NaN in `a` gives `b`.
 inline void keep_smaller(const Float8& a, Float8& b) { b = a < b ? a : b; }
+
+inline Float8 square_root(const Float8& x) {
+#ifdef __AVX__
+  return std::bit_cast<Float8>(_mm256_sqrt_ps(std::bit_cast<__m256>(x)));
+#else
+  Float8 root;
+  for (unsigned lane = 0; lane < 8; ++lane) root[lane] = std::sqrt(x[lane]);
+  return root;
+#endif
+}
 
 }  // namespace vernier

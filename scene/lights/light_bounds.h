@@ -19,9 +19,6 @@ struct LightBounds {
   float cos_emission = 0;
   float power = 0;
   bool two_sided = false;  ///< shines along -axis likewise
-
-  /// Upper estimate, up to a constant, of the light that reaches the receiver; zero only when none can.
-  float importance(const LightReceiver& receiver) const;
 };
 
 /// Bounds of both.

@@ -7,7 +7,7 @@ namespace vernier {
 namespace {
 
 constexpr int buckets = 12;
-constexpr int max_split_depth = 32;  // below this the middle halves what is left: a trail has 64 bits
+constexpr int max_split_depth = 32;  // below this the middle halves what is left: recursion stays shallow
 
 /// Solid angle that the emission cones of a group cover, cosine-weighted beyond the spread (Conty Estevez and
 /// Kulla 2018, eq. 1).
@@ -36,25 +36,32 @@ float cost(const LightBounds& group, const Bounds& parent, int axis) {
   return regularity * group.power * orientation_measure(group) * surface_area(group.box);
 }
 
+float sum(const Float8& x) {
+  float total = 0;
+  for (int i = 0; i < LightNode::width; ++i) total += x[i];
+  return total;
+}
+
 }  // namespace
 
-LightTree::LightTree(std::span<const LightBounds> bounds) : trail_(bounds.size(), 0) {
+LightTree::LightTree(std::span<const LightBounds> bounds) : places_(bounds.size()) {
   std::vector<uint32_t> lights;
   for (uint32_t i = 0; i < bounds.size(); ++i)
     if (bounds[i].power > 0) lights.push_back(i);
   if (lights.empty()) return;
-  nodes_.reserve(2 * lights.size());
-  build(bounds, lights, 0, 0);
+  std::vector<BinaryNode> binary;
+  binary.reserve(2 * lights.size());
+  build(binary, bounds, lights, 0);
+  widen(binary, 0, 0, 0);
 }
 
-uint32_t LightTree::build(std::span<const LightBounds> bounds, std::span<uint32_t> lights, uint64_t trail,
-                          int depth) {
-  const auto index = uint32_t(nodes_.size());
-  nodes_.emplace_back();
+void LightTree::build(std::vector<BinaryNode>& nodes, std::span<const LightBounds> bounds,
+                      std::span<uint32_t> lights, int depth) {
+  const size_t index = nodes.size();
+  nodes.emplace_back();
   if (lights.size() == 1) {
-    nodes_[index] = {bounds[lights[0]], 0, lights[0]};
-    trail_[lights[0]] = trail;
-    return index;
+    nodes[index] = {bounds[lights[0]], 0, lights[0]};
+    return;
   }
 
   Bounds box, centers;
@@ -96,48 +103,88 @@ uint32_t LightTree::build(std::span<const LightBounds> bounds, std::span<uint32_
     middle = std::stable_partition(lights.begin(), lights.end(),
                                    [&](uint32_t i) { return bucket_of(i, best_axis) < best_split; });
   const auto count = size_t(middle - lights.begin());
-  build(bounds, lights.first(count), trail, depth + 1);
-  const uint32_t right = build(bounds, lights.subspan(count), trail | (uint64_t(1) << depth), depth + 1);
-  nodes_[index] = {merge(nodes_[index + 1].bounds, nodes_[right].bounds), right, 0};
+  build(nodes, bounds, lights.first(count), depth + 1);
+  const auto right = uint32_t(nodes.size());
+  build(nodes, bounds, lights.subspan(count), depth + 1);
+  nodes[index] = {merge(nodes[index + 1].bounds, nodes[right].bounds), right, 0};
+}
+
+uint32_t LightTree::widen(const std::vector<BinaryNode>& binary, uint32_t root, uint32_t parent,
+                          uint32_t slot) {
+  // Opens the group about which least is known until there are eight.
+  std::vector<uint32_t> members{root};
+  while (members.size() < LightNode::width) {
+    auto widest = members.end();
+    float most = -1;
+    for (auto member = members.begin(); member != members.end(); ++member) {
+      const LightBounds& b = binary[*member].bounds;
+      const float unknown = b.power * orientation_measure(b) * b.box.half_area();
+      if (binary[*member].right != 0 && unknown > most) {
+        most = unknown;
+        widest = member;
+      }
+    }
+    if (widest == members.end()) break;
+    const uint32_t opened = *widest;
+    *widest = opened + 1;
+    members.push_back(binary[opened].right);
+  }
+
+  const auto index = uint32_t(nodes_.size());
+  nodes_.emplace_back();
+  nodes_[index].parent = parent;
+  nodes_[index].slot_in_parent = slot;
+  for (uint32_t i = 0; i < members.size(); ++i) {
+    const BinaryNode& member = binary[members[i]];
+    nodes_[index].set(int(i), member.bounds);
+    if (member.right == 0) {
+      nodes_[index].leaf |= 1u << i;
+      nodes_[index].child[i] = member.light;
+      places_[member.light] = {index, i};
+    } else {
+      const uint32_t child = widen(binary, members[i], index, i);
+      nodes_[index].child[i] = child;
+    }
+  }
   return index;
 }
 
 LightTree::Pick LightTree::sample(const LightReceiver& receiver, float u) const {
-  if (nodes_.empty() || !(nodes_[0].bounds.importance(receiver) > 0)) return {};
+  if (nodes_.empty()) return {};
   float prob = 1;
-  uint32_t index = 0;
-  while (nodes_[index].right != 0) {
-    const float left = nodes_[index + 1].bounds.importance(receiver);
-    const float right = nodes_[nodes_[index].right].bounds.importance(receiver);
-    if (!(left + right > 0)) return {};
-    const float left_prob = left / (left + right);
-    if (u < left_prob) {
-      u /= left_prob;
-      prob *= left_prob;
-      index = index + 1;
-    } else {
-      u = (u - left_prob) / (1 - left_prob);
-      prob *= 1 - left_prob;
-      index = nodes_[index].right;
+  const LightNode* node = nodes_.data();
+  while (true) {
+    const Float8 weights = node->importance(receiver);
+    const float total = sum(weights);
+    if (!(total > 0)) return {};
+    // The slot whose share of u it is; rounding may run past the last.
+    float rest = u * total;
+    int slot = -1;
+    for (int i = 0; i < LightNode::width; ++i) {
+      if (!(weights[i] > 0)) continue;
+      if (slot >= 0) rest -= weights[slot];
+      slot = i;
+      if (rest < weights[i]) break;
     }
-    u = std::min(u, 0x1.fffffep-1f);
+    prob *= weights[slot] / total;
+    if (node->leaf >> slot & 1) return {node->child[size_t(slot)], prob};
+    u = std::clamp(rest / weights[slot], 0.f, 0x1.fffffep-1f);
+    node = &nodes_[node->child[size_t(slot)]];
   }
-  return {nodes_[index].light, prob};
 }
 
 float LightTree::prob(const LightReceiver& receiver, uint32_t light) const {
-  if (nodes_.empty() || !(nodes_[0].bounds.importance(receiver) > 0)) return 0;
+  if (places_[light].slot == LightNode::width) return 0;
   float prob = 1;
-  uint32_t index = 0;
-  for (uint64_t trail = trail_[light]; nodes_[index].right != 0; trail >>= 1) {
-    const float left = nodes_[index + 1].bounds.importance(receiver);
-    const float right = nodes_[nodes_[index].right].bounds.importance(receiver);
-    if (!(left + right > 0)) return 0;
-    const float left_prob = left / (left + right);
-    prob *= trail & 1 ? 1 - left_prob : left_prob;
-    index = trail & 1 ? nodes_[index].right : index + 1;
+  for (auto [index, slot] = places_[light];;) {
+    const LightNode& node = nodes_[index];
+    const Float8 weights = node.importance(receiver);
+    if (!(weights[slot] > 0)) return 0;
+    prob *= weights[slot] / sum(weights);
+    if (index == 0) return prob;
+    slot = node.slot_in_parent;
+    index = node.parent;
   }
-  return prob;
 }
 
 }  // namespace vernier

@@ -3,14 +3,15 @@
 #include <span>
 #include <vector>
 
-#include "scene/lights/light.h"
+#include "scene/lights/light_node.h"
 
 namespace vernier {
 
-/// Binary tree over lights that picks one nearly in proportion to what it may contribute to a point: by
-/// power, distance, orientation and the receiver's horizon, bounded for whole subtrees (Conty Estevez and
-/// Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting"; split cost and bounds as
-/// there, eqs. 1 to 3).
+/// Tree over lights, eight children a node, that picks one nearly in proportion to what it may contribute to
+/// a point: by power, distance, orientation and the receiver's horizon, bounded for whole subtrees (Conty
+/// Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting"; split cost and
+/// bounds as there, eqs. 1 to 3). Eight children rather than two: they are weighed at once, and the coarsest
+/// and worst guesses, high up, are skipped.
 class LightTree {
  public:
   /// bounds[i] belongs to light i; those of no power are never picked.
@@ -24,16 +25,21 @@ class LightTree {
   float prob(const LightReceiver& receiver, uint32_t light) const;
 
  private:
-  struct Node {
+  struct BinaryNode {
     LightBounds bounds;
     uint32_t right = 0;  ///< the left child follows its parent; 0: leaf
     uint32_t light = 0;
   };
+  struct Place {
+    uint32_t node = 0, slot = LightNode::width;  ///< no slot: never picked
+  };
 
-  uint32_t build(std::span<const LightBounds> bounds, std::span<uint32_t> lights, uint64_t trail, int depth);
+  static void build(std::vector<BinaryNode>& nodes, std::span<const LightBounds> bounds,
+                    std::span<uint32_t> lights, int depth);
+  uint32_t widen(const std::vector<BinaryNode>& binary, uint32_t root, uint32_t parent, uint32_t slot);
 
-  std::vector<Node> nodes_;
-  std::vector<uint64_t> trail_;  ///< by light: turns from the root, lowest bit first, 1 is right
+  std::vector<LightNode> nodes_;
+  std::vector<Place> places_;  ///< by light
 };
 
 }  // namespace vernier

@@ -1,0 +1,68 @@
+#include "scene/lights/light_node.h"
+
+namespace vernier {
+namespace {
+
+Float8 sine(const Float8& cosine) {
+  Float8 square = 1 - cosine * cosine;
+  keep_greater(Float8{}, square);
+  return square_root(square);
+}
+
+/// cos(max(0, a - b)) of two angles in [0, pi] given by cosine and sine.
+Float8 cos_difference(const Float8& sin_a, const Float8& cos_a, const Float8& sin_b, const Float8& cos_b) {
+  return cos_a > cos_b ? Float8{} + 1 : cos_a * cos_b + sin_a * sin_b;
+}
+
+}  // namespace
+
+void LightNode::set(int slot, const LightBounds& bounds) {
+  const Vec3f center = bounds.box.center();
+  center_x_[slot] = center.x;
+  center_y_[slot] = center.y;
+  center_z_[slot] = center.z;
+  radius2_[slot] = square(bounds.box.radius());
+  axis_x_[slot] = bounds.axis.x;
+  axis_y_[slot] = bounds.axis.y;
+  axis_z_[slot] = bounds.axis.z;
+  cos_spread_[slot] = bounds.cos_spread;
+  sin_spread_[slot] = safe_sqrt(1 - square(bounds.cos_spread));
+  cos_emission_[slot] = bounds.cos_emission;
+  power_[slot] = bounds.power;
+  two_sided_[slot] = bounds.two_sided ? -1 : 0;
+}
+
+Float8 LightNode::importance(const LightReceiver& receiver) const {
+  const Float8 x = center_x_ - receiver.position.x, y = center_y_ - receiver.position.y,
+               z = center_z_ - receiver.position.z;
+  const Float8 distance2 = x * x + y * y + z * z;
+  const Float8 inverse = 1 / square_root(distance2);
+
+  // Angle that the sphere fills seen from the receiver. From inside it, what follows is not used.
+  Float8 sin_sphere = radius2_ / distance2;
+  keep_smaller(Float8{} + 1, sin_sphere);
+  const Float8 cos_sphere = square_root(1 - sin_sphere);
+  sin_sphere = square_root(sin_sphere);
+
+  Float8 cos_axis = -(axis_x_ * x + axis_y_ * y + axis_z_ * z) * inverse;
+  cos_axis = two_sided_ & (cos_axis < 0) ? -cos_axis : cos_axis;
+  const Float8 cos_nearest = cos_difference(sine(cos_axis), cos_axis, sin_spread_, cos_spread_);
+  const Float8 cos_emitted = cos_difference(sine(cos_nearest), cos_nearest, sin_sphere, cos_sphere);
+  Mask8 lit = cos_emitted > cos_emission_;
+  Float8 value = power_ * cos_emitted / distance2;
+
+  if (receiver.normal != Vec3f(0, 0, 0)) {
+    const Float8 cos_center =
+        (receiver.normal.x * x + receiver.normal.y * y + receiver.normal.z * z) * inverse;
+    const Float8 cos_incident = cos_difference(sine(cos_center), cos_center, sin_sphere, cos_sphere);
+    lit &= cos_incident > 0;
+    value *= cos_incident;
+  }
+
+  // Inside the sphere distance and direction mean little; its radius keeps one near light from taking all.
+  Float8 near = radius2_;
+  keep_greater(Float8{} + std::numeric_limits<float>::min(), near);
+  return distance2 > radius2_ ? (lit ? value : Float8{}) : power_ / near;
+}
+
+}  // namespace vernier
