@@ -73,7 +73,7 @@ TEST(LayersOfAFile, UsageErrors) {
 TEST(LayersOfAFile, ErrorLayersServeTheBiasTest) {
   const TemporaryFolder folder;
   const auto picture = [&](const char* seed, const char* depth) {
-    const std::string path = folder.file(std::string(seed) + ".exr");
+    std::string path = folder.file(std::string(seed) + ".exr");
     EXPECT_EQ(
         render({"--spp", "64", "--aov", "error", "--seed", seed, "--max-depth", depth, "-o", path}).exit_code,
         0);
