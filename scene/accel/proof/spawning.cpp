@@ -92,12 +92,16 @@ Count missed_gaps(BuildAccelerator build, const SpawnCase& spawn_case, unsigned 
     const float size = std::max(spawn_case.scale, 0x1p17f * ulp_at(max_component(abs(center))));
     const float ulp = ulp_at(max_component(abs(center)) + size);
     std::vector<Vec3f> positions;
-    for (int i = 0; i < 3; ++i) {
-      Vec3f p = center + dice.in_cube(size);
-      for (int axis = 0; axis < 3; ++axis) p[axis] = std::round(p[axis] / ulp) * ulp;
-      positions.push_back(p);
+    Vec3f normal{0, 0, 0};
+    while (length(normal) < 0.1f * size * size) {  // nor slivers, for the same reason
+      positions.clear();
+      for (int i = 0; i < 3; ++i) {
+        Vec3f p = center + dice.in_cube(size);
+        for (int axis = 0; axis < 3; ++axis) p[axis] = std::round(p[axis] / ulp) * ulp;
+        positions.push_back(p);
+      }
+      normal = cross(positions[1] - positions[0], positions[2] - positions[0]);
     }
-    const Vec3f normal = cross(positions[1] - positions[0], positions[2] - positions[0]);
     const int axis = std::abs(normal.x) > std::abs(normal.y)
                          ? (std::abs(normal.x) > std::abs(normal.z) ? 0 : 2)
                          : (std::abs(normal.y) > std::abs(normal.z) ? 1 : 2);
