@@ -34,6 +34,7 @@ struct Row {
 
 std::vector<const HardCase*> cases_named(const std::vector<std::string>& names) {
   std::vector<const HardCase*> cases;
+  cases.reserve(proof::hard_cases().size() + names.size());
   for (const auto& name : names) cases.push_back(&find_by_name(proof::hard_cases(), "case", name));
   if (names.empty())
     for (const HardCase& hard_case : proof::hard_cases()) cases.push_back(&hard_case);
@@ -100,6 +101,7 @@ ExitCode run_bench_stability(const BenchStabilityFlags& flags, const Program& pr
   for (const AcceleratorEntry* entry : entries) fmt::print(" {:>12}", entry->name);
   fmt::print("\n");
   std::vector<Row> rows;
+  rows.reserve(cases.size());
   for (const HardCase* hard_case : cases)
     rows.push_back(measure(*hard_case, entries, static_cast<uint64_t>(flags.rays)));
 

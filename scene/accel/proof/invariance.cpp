@@ -16,8 +16,8 @@ Vec3f scaled(const Vec3f& v, int exponent) {
 }
 
 void add_unit_box(Soup& soup) {
-  std::vector<Vec3f> corners;
-  for (int i = 0; i < 8; ++i) corners.emplace_back(float(i & 1), float(i >> 1 & 1), float(i >> 2 & 1));
+  std::vector<Vec3f> corners(8);
+  for (unsigned i = 0; i < 8; ++i) corners[i] = {float(i & 1), float(i >> 1 & 1), float(i >> 2 & 1)};
   soup.add(corners, {{0, 2, 1},
                      {1, 2, 3},
                      {4, 5, 6},
@@ -72,7 +72,8 @@ Count changed_by_signed_zeros(BuildAccelerator build) {
     for (unsigned step = 0; step < 27; ++step) {
       Ray ray;
       ray.origin = {places[origin % 5], places[origin / 5 % 5], places[origin / 25]};
-      ray.direction = {float(step % 3) - 1, float(step / 3 % 3) - 1, float(step / 9) - 1};
+      const unsigned along_x = step % 3, along_y = step / 3 % 3, along_z = step / 9;
+      ray.direction = {float(along_x) - 1, float(along_y) - 1, float(along_z) - 1};
       if (ray.direction == Vec3f{0, 0, 0}) continue;
       const auto plain = accelerator->closest(ray);
       for (unsigned signs = 1; signs < 8; ++signs) {

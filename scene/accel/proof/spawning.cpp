@@ -62,8 +62,8 @@ Count self_hits(BuildAccelerator build, const SpawnCase& spawn_case, uint64_t ra
     const float scale = spawn_case.scale;
     const Vec3f center = dice.direction() * (spawn_case.offset * scale);
     const Vec3f in_mesh = spawn_case.instanced ? dice.in_cube(scale) : center;
-    std::vector<Vec3f> positions;
-    for (int i = 0; i < 3; ++i) positions.push_back(in_mesh + dice.in_cube(scale));
+    std::vector<Vec3f> positions(3);
+    for (Vec3f& p : positions) p = in_mesh + dice.in_cube(scale);
     const Vec3f stretch{1, dice.magnitude(.1f, 10), dice.magnitude(.1f, 10)};
     const Transform to_world = spawn_case.instanced ? random_placement(dice, stretch, center) : Transform{};
     const SceneGeometry scene = make_scene(positions, {{0, 1, 2}}, to_world, spawn_case.instanced);
