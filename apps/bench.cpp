@@ -19,6 +19,7 @@ constexpr void (*benches[])(CLI::App&, Program&) = {
     register_bench_rays,
     register_bench_convergence,
     register_bench_stability,
+    register_bench_calibration,
 };
 
 }  // namespace

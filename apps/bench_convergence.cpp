@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/bench.h"
+#include "apps/bench_reference.h"
 #include "apps/convergence.h"
 #include "apps/convergence_page.h"
 #include "apps/flags.h"
@@ -154,20 +155,7 @@ void register_bench_convergence(CLI::App& bench, Program& program) {
   RenderFlags& render = flags->plan.render;
   add_plan_flags(*command, *flags);
   command->add_option("--out", flags->out, "folder for convergence.csv, .json and .html")->type_name("DIR");
-  command->add_option("--size", render.size, "of the picture (the reference's, else 256 pixels long)")
-      ->check(parsed_by(parse_pixel_size))
-      ->type_name("WxH");
-  command->add_option("--camera", render.camera, "of the scene, by name or number (the first)")
-      ->type_name("NAME|N");
-  command->add_option("--adaptive", render.adaptive, "as in vernier render: on, off")
-      ->check(CLI::IsMember({"on", "off"}))
-      ->type_name("on|off")
-      ->capture_default_str();
-  command->add_option("--max-depth", render.integrator_options.max_depth, "path vertices after the camera")
-      ->check(whole_number(1, 65536))
-      ->type_name("N")
-      ->capture_default_str();
-  add_environment_flags(*command, render);
+  add_measured_picture_flags(*command, render);
   command->callback([&program, flags] {
     program.run = [&program, flags] { return run_bench_convergence(*flags, program); };
   });

@@ -3,20 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apps/bench.h"
+#include "apps/bench_reference.h"
 #include "apps/choose_camera.h"
 #include "apps/convergence_fit.h"
 #include "apps/scene_summary.h"
-#include "core/base/error.h"
 #include "core/base/names.h"
-#include "core/image/image_io.h"
 #include "core/image/metrics.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
@@ -27,10 +24,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-constexpr int longest_side = 256;          // pixels, where no size was asked for
-constexpr uint64_t reference_seed = 9001;  // the others count from 1
 constexpr double errors_to_reach[] = {0.10, 0.05, 0.02, 0.01};
-const std::atomic<bool> never_stop{false};
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -86,42 +80,6 @@ struct Candidate {
 
   std::string name() const { return fmt::format("{}, {}", integrator_name, accelerator_name); }
 };
-
-struct Reference {
-  Image picture;
-  double rel_mse = 0;  ///< its own, as far as known
-  Json json;
-};
-
-Reference read_reference(const std::string& file) {
-  const LayeredImage layers = read_layers(file);
-  Reference reference{layers.rgb(), 0, {{"file", file}, {"rel_rmse", nullptr}}};
-  const auto error = layers.metadata.find("vernier:relRmse");
-  double value = 0;
-  if (error != layers.metadata.end()) {
-    const std::string& text = error->second;
-    if (std::from_chars(text.data(), text.data() + text.size(), value).ec == std::errc()) {
-      reference.json["rel_rmse"] = value;
-      reference.rel_mse = value * value;
-    }
-  }
-  return reference;
-}
-
-Reference render_reference(const Scene& scene, const Camera& camera, RenderOptions options, int spp,
-                           const IntegratorOptions& integrator_options) {
-  options.spp = spp;
-  options.seed = reference_seed;
-  options.adaptive = false;
-  const auto integrator = find_by_name(integrators(), "integrator", "path").make(integrator_options);
-  const RenderResult result = render(scene, camera, *integrator, options, never_stop);
-  return {result.film.image(),
-          square(result.error.rel_rmse),
-          {{"integrator", "path"},
-           {"samples_per_pixel", spp},
-           {"seconds", result.seconds},
-           {"rel_rmse", result.error.rel_rmse}}};
-}
 
 Run measure(Candidate& candidate, const Camera& camera, const RenderOptions& options,
             const Reference& reference, bool longest) {
@@ -246,32 +204,6 @@ std::vector<Candidate> make_candidates(const ConvergencePlan& plan, const SceneD
   return candidates;
 }
 
-/// Size as asked for, else that of the reference, else small.
-RenderOptions picture_options(const ConvergencePlan& plan, const CameraDescription& view,
-                              const std::optional<Reference>& reference) {
-  RenderOptions options;
-  options.adaptive = plan.render.adaptive == "on";
-  if (!plan.render.size.empty()) {
-    const PixelSize size = parse_pixel_size(plan.render.size);
-    options.width = size.width;
-    options.height = size.height;
-  } else if (reference) {
-    options.width = reference->picture.width;
-    options.height = reference->picture.height;
-  } else {
-    fill_in_size(options, view);
-    const int longer = std::max(options.width, options.height);
-    options.width = std::max(1, options.width * longest_side / longer);
-    options.height = std::max(1, options.height * longest_side / longer);
-  }
-  check_picture_size(options, {});
-  if (reference && (reference->picture.width != options.width || reference->picture.height != options.height))
-    throw Error(ErrorKind::usage, fmt::format("the reference has {}x{} pixels and --size asks for {}x{}",
-                                              reference->picture.width, reference->picture.height,
-                                              options.width, options.height));
-  return options;
-}
-
 }  // namespace
 
 Image relative_error_map(const Image& x, const Image& reference) {
@@ -302,12 +234,12 @@ SceneConvergence measure_convergence(const ConvergencePlan& plan, size_t index, 
   log.add(scenes.front()->notices());
   const auto chosen = choose_camera(description.cameras, plan.render.camera, log);
   const CameraDescription view = chosen ? *chosen : fit_camera(scenes.front()->bounds(), {}, log);
-  RenderOptions options = picture_options(plan, view, given);
+  RenderOptions options = bench_options(plan.render, view, given ? &given->picture : nullptr);
   const Camera camera(view, options.width, options.height);
   if (!given) fmt::print(stderr, "{}: reference of {} samples a pixel\n", file, plan.reference_spp);
   const Reference reference = given ? std::move(*given)
                                     : render_reference(*scenes.front(), camera, options, plan.reference_spp,
-                                                       plan.render.integrator_options);
+                                                       plan.render.integrator_options.max_depth);
 
   options.spp = 0;
   for (int seed = 1; seed <= plan.seeds; ++seed) {

@@ -66,24 +66,20 @@ void add_summary(HtmlPage& page, const Json& report) {
   for (const Json& scene : report["scenes"])
     for (const Json& candidate : scene["candidates"]) table.rows.push_back(summary_row(scene, candidate));
   page.table(table);
-  page.list({
-      std::string(
-          "Error is the relative RMSE against the reference, sqrt(mean((x - r)^2 / (r^2 + 0.01))), the "
-          "reference's own "
-          "variance taken off; the median over seeds."),
-      std::string(
-          "Slope is that of error over time on logarithmic axes. Sampling without bias gives -1/2; a slope "
-          "nearer to "
-          "nought at the end means that the curve flattens."),
-      std::string("Floor is the error at which the curve would flatten, fitted as error^2 = floor^2 + "
-                  "variance / time; "
-                  "systematic "
-                  "is what all seeds have in common after the longest time. Both are bias, or what the "
-                  "reference lacks: "
-                  "below the reference's own error they say nothing."),
-      std::string("Efficiency is 1 / (relative MSE x seconds of rendering) at the longest time."),
-      std::string("Times to reach an error are read off between measured points, those with ~ from the fit."),
-  });
+  page.paragraph(
+      "Error is the relative RMSE against the reference, sqrt(mean((x - r)^2 / (r^2 + 0.01))), with the "
+      "variance of the reference taken off; the median over seeds.");
+  page.paragraph(
+      "Slope is that of error over time on logarithmic axes. Sampling without bias gives -1/2; a slope "
+      "nearer "
+      "to nought at the end means that the curve flattens.");
+  page.paragraph(
+      "Floor is the error at which the curve would flatten, fitted as error^2 = floor^2 + variance / time; "
+      "systematic is what all seeds have in common after the longest time. Both are bias, or what the "
+      "reference lacks: below its own error they say nothing.");
+  page.paragraph(
+      "Efficiency is 1 / (relative MSE x seconds of rendering) at the longest time. Times to reach an error "
+      "are read off between measured points, those with ~ from the fit.");
 }
 
 Chart chart_of(const Json& scene, const char* abscissa, const std::string& x_label) {

@@ -1,0 +1,117 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/bench.h"
+#include "apps/calibration.h"
+#include "apps/choose_camera.h"
+#include "apps/flags.h"
+#include "core/base/names.h"
+#include "core/base/text_file.h"
+#include "scene/camera.h"
+#include "scene/scene.h"
+
+namespace vernier::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct CalibrationFlags {
+  RenderFlags render;  ///< scene, surroundings, size, how the picture is made
+  int spp = 64, seeds = 20, reference_spp = 4096;
+  std::string json;
+};
+
+std::string figure(const Json& value) {
+  return value.is_null() ? "-" : fmt::format("{:.3g}", value.get<double>());
+}
+
+void print_report(const Json& report) {
+  std::vector<std::vector<std::string>> rows{{"nominal coverage"}, {"measured"}};
+  for (const Json& row : report["coverage"]) {
+    rows[0].push_back(fmt::format("{:.0f} %", 100 * row["nominal"].get<double>()));
+    rows[1].push_back(
+        row["measured"].is_null() ? "-" : fmt::format("{:.1f} %", 100 * row["measured"].get<double>()));
+  }
+  fmt::print("{}", text_table(rows));
+  fmt::print("pixels not to be trusted  {:.1f} %\n", 100 * report["flagged"].get<double>());
+  fmt::print("predicted over actual RMSE, by brightness, dark to bright ");
+  for (const Json& decile : report["deciles"]) fmt::print(" {}", figure(decile["predicted_over_actual"]));
+  const Json& image = report["image"];
+  fmt::print("\nimage: estimated {:.3g} %, true {:.3g} %, ratio {} ({} to {}) over {} runs, of means {}\n",
+             100 * image["estimated"].get<double>(), 100 * image["true"].get<double>(),
+             figure(image["ratio"]["median"]), figure(image["ratio"]["low"]), figure(image["ratio"]["high"]),
+             report["runs"].get<size_t>(), figure(image["ratio_of_means"]));
+  fmt::print("95 % interval holds the truth in {:.0f} % of them; true above 1.1 x estimated in {}\n",
+             100 * image["interval_covers"].get<double>(), image["true_above_1.1_estimated"].get<size_t>());
+}
+
+ExitCode run_bench_calibration(const CalibrationFlags& flags, const Program& program) {
+  require_scene(flags.render.scene, "bench calibration");
+  if (!flags.json.empty()) check_writable_text_file(flags.json);
+  NoticeLog log(false);
+  SceneDescription description = import_scene(flags.render.scene, flags.render.import);
+  if (auto environment = read_environment(flags.render)) description.environment = std::move(environment);
+  log.add(description.notices);
+  const auto chosen = choose_camera(description.cameras, flags.render.camera, log);
+  const Scene scene(std::move(description), {});
+  log.add(scene.notices());
+  const CameraDescription view = chosen ? *chosen : fit_camera(scene.bounds(), {}, log);
+  RenderOptions options = bench_options(flags.render, view, nullptr);
+  options.spp = flags.spp;
+  if (!flags.render.error.empty()) {
+    options.spp = 0;
+    options.target_error = parse_fraction(flags.render.error);
+  }
+  const Camera camera(view, options.width, options.height);
+  const int max_depth = flags.render.integrator_options.max_depth;
+  const Reference reference = render_reference(scene, camera, options, flags.reference_spp, max_depth);
+  const auto integrator =
+      find_by_name(integrators(), "integrator", "path").make(flags.render.integrator_options);
+  Calibration calibration(reference);
+  for (int seed = 1; seed <= flags.seeds; ++seed) {
+    options.seed = uint64_t(seed);
+    calibration.add(render(scene, camera, *integrator, options, never_stop));
+  }
+  Json report = bench_header(program);
+  report["scene"] = flags.render.scene;
+  report["width"] = options.width;
+  report["height"] = options.height;
+  report["reference"] = reference.json;
+  report.update(calibration.json());
+  print_report(report);
+  if (!flags.json.empty())
+    write_text_file(flags.json, report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void register_bench_calibration(CLI::App& bench, Program& program) {
+  CLI::App* command =
+      bench.add_subcommand("calibration", "Whether reported errors are those that pictures have");
+  auto flags = std::make_shared<CalibrationFlags>();
+  add_scene_flags(*command, flags->render.scene, flags->render.import);
+  command->add_option("--spp", flags->spp, "samples a pixel of each run")
+      ->check(whole_number(2, 1 << 30))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--error", flags->render.error, "instead: stop each run at this estimated error")
+      ->check(parsed_by(parse_fraction))
+      ->type_name("ERROR");
+  command->add_option("--seeds", flags->seeds, "runs")
+      ->check(whole_number(1, 1'000'000))
+      ->type_name("K")
+      ->capture_default_str();
+  command->add_option("--reference-spp", flags->reference_spp, "samples a pixel of the reference")
+      ->check(whole_number(2, 1 << 30))
+      ->type_name("N")
+      ->capture_default_str();
+  add_measured_picture_flags(*command, flags->render);
+  command->add_option("--json", flags->json, "write the figures as JSON")->type_name("FILE");
+  command->callback([&program, flags] {
+    program.run = [&program, flags] { return run_bench_calibration(*flags, program); };
+  });
+}
+
+}  // namespace vernier::apps

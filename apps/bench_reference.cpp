@@ -1,0 +1,100 @@
+#include "apps/bench_reference.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <limits>
+
+#include "apps/choose_camera.h"
+#include "apps/flags.h"
+#include "core/base/error.h"
+#include "core/base/names.h"
+#include "core/image/image_io.h"
+#include "scene/camera.h"
+#include "scene/scene.h"
+
+namespace vernier::apps {
+namespace {
+
+constexpr int longest_side = 256;  // pixels, where no size was asked for
+
+}  // namespace
+
+const std::atomic<bool> never_stop{false};
+
+Reference read_reference(const std::string& file) {
+  const LayeredImage layers = read_layers(file);
+  Reference reference{layers.rgb(), 0, {}, {{"file", file}, {"rel_rmse", nullptr}}};
+  const auto error = layers.metadata.find("vernier:relRmse");
+  double value = 0;
+  if (error != layers.metadata.end()) {
+    const std::string& text = error->second;
+    if (std::from_chars(text.data(), text.data() + text.size(), value).ec == std::errc()) {
+      reference.json["rel_rmse"] = value;
+      reference.rel_mse = value * value;
+    }
+  }
+  return reference;
+}
+
+Reference render_reference(const Scene& scene, const Camera& camera, RenderOptions options, int spp,
+                           int max_depth) {
+  options.spp = spp;
+  options.time_limit = std::numeric_limits<double>::infinity();
+  IntegratorOptions integrator_options;
+  integrator_options.max_depth = max_depth;
+  options.seed = reference_seed;
+  options.adaptive = false;
+  const auto integrator = find_by_name(integrators(), "integrator", "path").make(integrator_options);
+  const RenderResult result = render(scene, camera, *integrator, options, never_stop);
+  return {result.film.image(),
+          square(result.error.rel_rmse),
+          error_layers(result.film).standard_error,
+          {{"integrator", "path"},
+           {"samples_per_pixel", spp},
+           {"seconds", result.seconds},
+           {"rel_rmse", result.error.rel_rmse}}};
+}
+
+RenderOptions bench_options(const RenderFlags& flags, const CameraDescription& view, const Image* reference) {
+  RenderOptions options;
+  options.adaptive = flags.adaptive == "on";
+  if (!flags.size.empty()) {
+    const PixelSize size = parse_pixel_size(flags.size);
+    options.width = size.width;
+    options.height = size.height;
+  } else if (reference) {
+    options.width = reference->width;
+    options.height = reference->height;
+  } else {
+    fill_in_size(options, view);
+    const int longer = std::max(options.width, options.height);
+    options.width = std::max(1, options.width * longest_side / longer);
+    options.height = std::max(1, options.height * longest_side / longer);
+  }
+  check_picture_size(options, {});
+  if (reference && (reference->width != options.width || reference->height != options.height))
+    throw Error(ErrorKind::usage,
+                fmt::format("the reference has {}x{} pixels and --size asks for {}x{}", reference->width,
+                            reference->height, options.width, options.height));
+  return options;
+}
+
+void add_measured_picture_flags(CLI::App& command, RenderFlags& flags) {
+  command.add_option("--size", flags.size, "of the picture (the reference's, else 256 pixels long)")
+      ->check(parsed_by(parse_pixel_size))
+      ->type_name("WxH");
+  command.add_option("--camera", flags.camera, "of the scene, by name or number (the first)")
+      ->type_name("NAME|N");
+  command.add_option("--adaptive", flags.adaptive, "as in vernier render: on, off")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->type_name("on|off")
+      ->capture_default_str();
+  command.add_option("--max-depth", flags.integrator_options.max_depth, "path vertices after the camera")
+      ->check(whole_number(1, 65536))
+      ->type_name("N")
+      ->capture_default_str();
+  add_environment_flags(command, flags);
+}
+
+}  // namespace vernier::apps

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "apps/bench_reference.h"
+#include "integrators/render.h"
+
+// How far the errors that renders report agree with those that they have (`vernier bench calibration`).
+
+namespace vernier::apps {
+
+/// Nominal coverages, and how many standard deviations on either side of a normal variable have them.
+struct NominalCoverage {
+  double part, deviations;
+};
+constexpr std::array<NominalCoverage, 4> nominal_coverages{
+    {{0.50, 0.674490}, {0.90, 1.644854}, {0.95, 1.959964}, {0.99, 2.575829}}};
+
+/// Adds up many renders of one picture, which differ in their seeds, against a reference with error layer.
+class Calibration {
+ public:
+  explicit Calibration(const Reference& reference);
+
+  void add(const RenderResult& result);
+
+  /// docs/bench.md, `vernier bench calibration`.
+  nlohmann::ordered_json json() const;
+
+ private:
+  struct Decile {
+    double predicted = 0, actual = 0;  ///< sums of squares
+    size_t values = 0;
+  };
+  struct Image {
+    double estimated, low, high, truth;
+  };
+  void add_value(double difference, double error, double reference_error, size_t decile);
+
+  const Reference& reference_;
+  std::vector<uint8_t> decile_of_pixel_;  ///< by luminance of the reference
+  std::array<Decile, 10> deciles_{};
+  std::array<size_t, nominal_coverages.size()> covered_{};
+  size_t values_ = 0, pixels_ = 0, flagged_ = 0;
+  std::vector<Image> images_;
+};
+
+}  // namespace vernier::apps
