@@ -40,6 +40,7 @@ Reference read_reference(const std::string& file) {
 Reference render_reference(const Scene& scene, const Camera& camera, RenderOptions options, int spp,
                            int max_depth) {
   options.spp = spp;
+  options.target_error = 0;
   options.time_limit = std::numeric_limits<double>::infinity();
   IntegratorOptions integrator_options;
   integrator_options.max_depth = max_depth;

@@ -8,8 +8,8 @@ namespace vernier {
 /// how they are verified.
 struct ErrorEstimate {
   /// Relative RMSE of the image, sqrt(mean((x - r)^2 / (r^2 + 0.01))) over pixels and channels, x the image
-  /// and r the truth, with the ends of a 95 % interval. Not a number while some pixel lacks a sample in
-  /// either half.
+  /// and r the truth, with the ends of a 95 % interval for the error that this very image has. Not a number
+  /// while some pixel lacks a sample in either half.
   double rel_rmse = 0, low = 0, high = 0;
   /// Part of the pixels whose error figure is not to be trusted: too few samples, or most of what is known of
   /// them comes from too few.
