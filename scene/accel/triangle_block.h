@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/accel/simd.h"
+#include "core/math/simd.h"
 #include "scene/accel/triangle.h"
 
 namespace vernier {

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "core/math/simd.h"
 #include "core/math/vec.h"
 #include "scene/accel/accelerator.h"
 #include "scene/accel/huge_pages.h"
-#include "scene/accel/simd.h"
 #include "scene/bounds.h"
 
 // A bounding volume hierarchy of eight children a node over anything that has a box: triangles for `bvh`,

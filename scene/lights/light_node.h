@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "scene/accel/simd.h"
+#include "core/math/simd.h"
 #include "scene/lights/light_bounds.h"
 
 namespace vernier {
