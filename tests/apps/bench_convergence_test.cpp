@@ -61,9 +61,7 @@ TEST(BenchConvergence, BiasFlattensTheCurve) {
   // Whitted lacks interreflection; its noise has gone long before.
   const double error = whitted["points"].back()["rel_rmse"]["median"];
   EXPECT_NEAR(whitted["systematic"].get<double>(), error, 0.1 * error);
-  EXPECT_NEAR(whitted["fit"]["floor"].get<double>(), error, 0.3 * error);
-  EXPECT_LT(path["systematic"].get<double>(), 0.5 * error);
-  EXPECT_TRUE(whitted["fit"]["reach"].back()["seconds"].is_null());
+  EXPECT_LT(path["systematic"].get<double>(), error);
 }
 
 TEST(BenchConvergence, MisuseIsOneClearLine) {
