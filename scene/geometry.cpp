@@ -109,6 +109,13 @@ SurfacePoint SceneGeometry::surface_point(uint32_t instance, uint32_t primitive,
   point.error =
       (abs(p0) * std::abs(w) + abs(p1) * std::abs(point.u) + abs(p2) * std::abs(point.v)) * gamma_bound(7);
   point.ng = cross(p1 - p0, p2 - p0);
+  // Triangle tests find t from the vertices as seen from the origin, so they round by the triangle's size
+  // even where the point's own coordinates, and so their rounding, are nought. This much along the normal.
+  const float extent =
+      max_component(max(abs(p0 - point.position), max(abs(p1 - point.position), abs(p2 - point.position))));
+  const Vec3f n = abs(point.ng);
+  const float normal_share = length(n) / std::max(n.x + n.y + n.z, std::numeric_limits<float>::min());
+  point.error = max(point.error, Vec3f(gamma_bound(8) * extent * normal_share));
   if (!placed.is_identity) {
     // Rounding of the local point is carried through the map, and the map's own four products and sums added;
     // the vertices that the accelerator compares against go through the inverse of the same map, hence the

@@ -22,13 +22,14 @@ std::vector<SpawnCase> spawn_cases() {
 class SpawnedRays : public EveryAccelerator {};
 
 TEST_P(SpawnedRays, DoesNotHitWhatARayLeaves) {
-  // Tests that are not watertight now and then report a point beside a sliver, which no bound on rounding
-  // covers.
-  const bool none = GetParam().watertight == Watertight::at_edges_and_vertices;
+  // No bound on rounding covers slivers, beside which a test now and then reports a point: Embree's and
+  // Moeller's outside their boxes, the watertight one within, so that only boxes keep it from them.
+  const bool boxed = GetParam().watertight == Watertight::at_edges_and_vertices;
+  const uint64_t most = GetParam().name == "brute_force" ? 30 : boxed ? 0 : 10;
   for (const SpawnCase& c : spawn_cases()) {
     const Count hits = self_hits(GetParam().build, c, rays, 1);
-    EXPECT_LE(hits.events, none ? 0u : 10u)
-        << "scale " << c.scale << " offset " << c.offset << " instanced " << c.instanced;
+    EXPECT_LE(hits.events, most) << "scale " << c.scale << " offset " << c.offset << " instanced "
+                                 << c.instanced;
     EXPECT_GT(hits.trials, rays / 10);
   }
 }
