@@ -12,7 +12,7 @@ Scene slab(float absorption, float above, float below) {
   material.attenuation_distance = 1;
   material.attenuation_color = Rgb(std::exp(-absorption));
   return SceneBuilder()
-      .add(box({-50, 0, -50}, {50, thickness, 50}), material)
+      .add(box({-5, 0, -5}, {5, thickness, 5}), material)
       .environment([=](const Vec3f& w) { return w.y > 0 ? above : below; }, 2)
       .build();
 }
