@@ -87,7 +87,8 @@ deps() {
 
 # --- build ---
 
-configure() { cmake --preset release -DVERNIER_WERROR="${VERNIER_WERROR:-OFF}"; }
+# What was chosen before stays when nothing is said, so that nothing is built anew.
+configure() { cmake --preset release ${VERNIER_WERROR:+-DVERNIER_WERROR="$VERNIER_WERROR"}; }
 
 build() {
   deps
