@@ -113,7 +113,7 @@ demo() {
   render_with_each_integrator tests/scenes/cornell_box.gltf cornell_box --size 512x512 --spp 64
   render_with_each_integrator tests/scenes/two_spheres.gltf two_spheres --size 640x480 --spp 64
   local model name found=0
-  for model in glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb glTF2/ClearCoat-glTF/ClearCoatTest.gltf; do
+  for model in glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb glTF2/textureTransform/TextureTransformTest.gltf; do
     [[ -f $assimp_models/$model ]] || continue
     found=1
     name=$(basename "${model%.*}")
