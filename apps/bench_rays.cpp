@@ -74,6 +74,9 @@ Json candidate_json(const TimedAccelerator& candidate, const TimedAccelerator& e
     if (const auto& cost = candidate.cost[k])
       json["per_ray"][std::string(ray_kinds[k].name)] = {{"nodes", cost->nodes},
                                                          {"blocks_of_four_triangles", cost->blocks}};
+  for (const RayKind& kind : ray_kinds)
+    json["differing_per_million"][std::string(kind.name)] =
+        differing_per_million(candidate, embree, kind, rays.*kind.rays);
   for (const size_t threads : {0, 1})
     for (const Rate& rate : rates(candidate, embree, threads, rays))
       json["rays_per_second"][threads == 0 ? "one_thread" : "all_threads"][std::string(rate.kind)] = {
@@ -104,6 +107,19 @@ std::string structure_table(const std::vector<TimedAccelerator>& candidates, con
                     fmt::format("{:.1f}", double(candidate.accelerator->stats().bytes) / triangles),
                     cost ? fmt::format("{:.1f}", cost->nodes) : "-",
                     cost ? fmt::format("{:.1f}", cost->blocks) : "-"});
+  }
+  return text_table(rows);
+}
+
+std::string difference_table(const std::vector<TimedAccelerator>& candidates, const TimedAccelerator& embree,
+                             const PathRays& rays) {
+  std::vector<std::vector<std::string>> rows{{"answers unlike embree's"}};
+  for (const RayKind& kind : ray_kinds) rows[0].emplace_back(kind.name);
+  for (const TimedAccelerator& candidate : candidates) {
+    rows.push_back({std::string(candidate.entry->name)});
+    for (const RayKind& kind : ray_kinds)
+      rows.back().push_back(
+          fmt::format("{:.3g}", differing_per_million(candidate, embree, kind, rays.*kind.rays)));
   }
   return text_table(rows);
 }
@@ -141,7 +157,8 @@ ExitCode run_bench_rays(const BenchRaysFlags& flags, const Program& program) {
       rays.primary.size(), rays.bounce.size(), rays.shadow.size(), rays.primary.size(), flags.repetitions);
   fmt::print("{}\n", structure_table(candidates, embree, triangles));
   fmt::print("one thread\n{}\n", rate_table(candidates, embree, rays, 0));
-  fmt::print("{} threads\n{}", thread_count(), rate_table(candidates, embree, rays, 1));
+  fmt::print("{} threads\n{}\n", thread_count(), rate_table(candidates, embree, rays, 1));
+  fmt::print("per 10^6 rays\n{}", difference_table(candidates, embree, rays));
   if (flags.json.empty()) return ExitCode::done;
 
   Json json = bench_header(program);

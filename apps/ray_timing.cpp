@@ -92,6 +92,23 @@ std::vector<double> TimedAccelerator::mixed_seconds(size_t threads) const {
   return sum;
 }
 
+double differing_per_million(const TimedAccelerator& a, const TimedAccelerator& b, const RayKind& kind,
+                             std::span<const Ray> rays) {
+  const auto triangle = [](const Accelerator& accelerator, const Ray& ray) {
+    const auto hit = accelerator.closest(ray);
+    return hit ? TriangleId{hit->instance, hit->primitive} : TriangleId{};
+  };
+  const size_t stride = std::max(a.stride, b.stride), count = (rays.size() + stride - 1) / stride;
+  std::atomic<size_t> differing = 0;
+  parallel_for(count, [&](size_t i) {
+    const Ray& ray = rays[i * stride];
+    const bool differs = kind.occlusion ? a.accelerator->occluded(ray) != b.accelerator->occluded(ray)
+                                        : triangle(*a.accelerator, ray) != triangle(*b.accelerator, ray);
+    if (differs) ++differing;
+  });
+  return 1e6 * double(differing) / double(std::max<size_t>(count, 1));
+}
+
 void time_accelerators(std::vector<TimedAccelerator>& candidates, const Geometry& geometry,
                        const PathRays& rays, int repetitions) {
   for (int i = 0; i < repetitions; ++i)

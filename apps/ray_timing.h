@@ -44,6 +44,11 @@ struct TimedAccelerator {
   std::vector<double> mixed_seconds(size_t threads) const;
 };
 
+/// Rays among 10^6 that the two answer differently: another triangle, or blocked and not. At seams between
+/// triangles either of them may be right.
+double differing_per_million(const TimedAccelerator& a, const TimedAccelerator& b, const RayKind& kind,
+                             std::span<const Ray> rays);
+
 /// Builds and times them.
 void time_accelerators(std::vector<TimedAccelerator>& candidates, const Geometry& geometry,
                        const PathRays& rays, int repetitions);

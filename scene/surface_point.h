@@ -16,15 +16,25 @@ struct SurfacePoint {
   uint32_t instance = 0, primitive = 0;
   bool front = true;  ///< met from the front side
 
-  /// Ray leaving the surface along w (world, any length), free of self-intersection.
-  Ray spawn(const Vec3f& w) const { return {offset_ray_origin(position, error, ng, w), 0, w}; }
+  TriangleId triangle() const { return {instance, primitive}; }
 
-  /// Segment to another surface point, both ends moved off their surfaces; t in (0, 1) covers it.
-  Ray spawn_to(const Vec3f& target, const Vec3f& target_error, const Vec3f& target_normal) const {
+  /// Ray leaving the surface along w (world, any length), free of self-intersection.
+  Ray spawn(const Vec3f& w) const {
+    Ray ray{offset_ray_origin(position, error, ng, w), 0, w};
+    ray.leaves = triangle();
+    return ray;
+  }
+
+  /// Segment to another point, on triangle `reached` if on any, both ends moved off their surfaces; t in
+  /// (0, 1) covers it.
+  Ray spawn_to(const Vec3f& target, const Vec3f& target_error, const Vec3f& target_normal,
+               const TriangleId& reached = {}) const {
     const Vec3f rough = target - position;
-    const Vec3f from = offset_ray_origin(position, error, ng, rough);
-    const Vec3f to = offset_ray_origin(target, target_error, target_normal, -rough);
-    return {from, 0, to - from, 1};
+    Ray ray = spawn(rough);
+    ray.direction = offset_ray_origin(target, target_error, target_normal, -rough) - ray.origin;
+    ray.t_max = 1;
+    ray.reaches = reached;
+    return ray;
   }
 };
 

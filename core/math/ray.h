@@ -1,10 +1,18 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
 
 #include "core/math/vec.h"
 
 namespace vernier {
+
+/// A triangle by its numbers in the scene; the default is none.
+struct TriangleId {
+  static constexpr uint32_t none = 0xffffffff;
+  uint32_t instance = none, primitive = none;
+  bool operator==(const TriangleId&) const = default;
+};
 
 /// Half-line origin + t direction, for t in (t_min, t_max). The direction need not be a unit vector: t counts
 /// in its length.
@@ -13,6 +21,9 @@ struct Ray {
   float t_min = 0;
   Vec3f direction{0, 0, 1};
   float t_max = std::numeric_limits<float>::infinity();
+  /// The triangles on whose planes the ray begins and ends. A line meets a plane once, so they cannot stand
+  /// in between, whatever a test that rounds may say of slivers; accelerators let the ray pass them.
+  TriangleId leaves{}, reaches{};
 
   Vec3f at(float t) const { return origin + t * direction; }
 };

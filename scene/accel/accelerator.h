@@ -21,6 +21,12 @@ struct RawHit {
   uint32_t instance = 0, primitive = 0;
 };
 
+/// Whether the hit is on a triangle that the ray leaves or reaches, and so is none.
+inline bool is_at_end(const Ray& ray, const RawHit& hit) {
+  const TriangleId met{hit.instance, hit.primitive};
+  return met == ray.leaves || met == ray.reaches;
+}
+
 /// Decides whether a hit counts (alpha coverage). Must be a pure function of its arguments and callable from
 /// many threads.
 class HitFilter {
@@ -62,7 +68,8 @@ struct QueryCost {
 
 /// Answers ray queries over fixed geometry. Rays may have any finite non-zero direction; an invalid ray (NaN,
 /// infinite origin, zero direction) misses. Triangles with a vertex that is not finite, or with no area, are
-/// never hit. Both sides of a triangle count. All queries are callable from many threads.
+/// never hit, nor are those that the ray leaves or reaches. Both sides of a triangle count. All queries are
+/// callable from many threads.
 class Accelerator {
  public:
   virtual ~Accelerator() = default;

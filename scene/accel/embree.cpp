@@ -57,11 +57,13 @@ void intersect(RTCScene scene, RTCRayHit& rayhit, Query& query, RTCFilterFunctio
   rtcIntersect1(scene, &rayhit, &arguments);
 }
 
-void occlude(RTCScene scene, RTCRay& ray, Query& query) {
+void occlude(RTCScene scene, RTCRay& ray, Query& query, RTCFilterFunctionN filter) {
   rtcInitRayQueryContext(&query.context);
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
   arguments.context = &query.context;
+  arguments.filter = filter;
+  if (filter) arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
   rtcOccluded1(scene, &ray, &arguments);
 }
 #else
@@ -71,8 +73,9 @@ void intersect(RTCScene scene, RTCRayHit& rayhit, Query& query, RTCFilterFunctio
   rtcIntersect1(scene, &query.context, &rayhit);
 }
 
-void occlude(RTCScene scene, RTCRay& ray, Query& query) {
+void occlude(RTCScene scene, RTCRay& ray, Query& query, RTCFilterFunctionN filter) {
   rtcInitIntersectContext(&query.context);
+  query.context.filter = filter;
   rtcOccluded1(scene, &query.context, &ray);
 }
 #endif
@@ -93,11 +96,18 @@ void filter_hit(const RTCFilterFunctionNArguments* args) {
   if (args->valid[0] == -1 && !query.filter->accept(*query.ray, raw_hit(*args, query))) args->valid[0] = 0;
 }
 
+/// Lets occlusion queries pass the triangles at the ends of the ray.
+void pass_ends(const RTCFilterFunctionNArguments* args) {
+  const auto& query = *reinterpret_cast<const Query*>(args->context);
+  if (args->valid[0] == -1 && is_at_end(*query.ray, raw_hit(*args, query))) args->valid[0] = 0;
+}
+
 /// Keeps every hit and rejects it, so that traversal goes on.
 void collect_hit(const RTCFilterFunctionNArguments* args) {
   if (args->valid[0] != -1) return;
   const auto& query = *reinterpret_cast<const Query*>(args->context);
-  query.collected->push_back(raw_hit(*args, query));
+  const RawHit hit = raw_hit(*args, query);
+  if (!is_at_end(*query.ray, hit)) query.collected->push_back(hit);
   args->valid[0] = 0;
 }
 
@@ -281,15 +291,23 @@ void EmbreeAccelerator::attach_placed(RTCScene mesh_scene, const Transform& to_w
 inline std::optional<RawHit> EmbreeAccelerator::closest(const ScaledRay& scaled, const Ray& world) const {
   RTCRayHit rayhit = embree_ray(scaled.ray, robust_);
   Query query{{}, &world, scaled.t_scale, filter_, nullptr};
-  intersect(scene_.get(), rayhit, query);
-  if (rayhit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  return raw_hit(rayhit.ray.tfar * scaled.t_scale, rayhit.hit);
+  while (true) {
+    intersect(scene_.get(), rayhit, query);
+    if (rayhit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+    const RawHit hit = raw_hit(rayhit.ray.tfar * scaled.t_scale, rayhit.hit);
+    if (!is_at_end(world, hit)) return hit;
+    // So rare that going on from there costs less than a filter, which would be called for every hit.
+    Ray rest = scaled.ray;
+    rest.t_min = rayhit.ray.tfar;
+    rayhit = embree_ray(rest, robust_);
+  }
 }
 
 inline bool EmbreeAccelerator::occluded(const ScaledRay& scaled, const Ray& world) const {
   RTCRayHit rayhit = embree_ray(scaled.ray, robust_);
   Query query{{}, &world, scaled.t_scale, filter_, nullptr};
-  occlude(scene_.get(), rayhit.ray, query);
+  const bool has_ends = world.leaves != TriangleId{} || world.reaches != TriangleId{};
+  occlude(scene_.get(), rayhit.ray, query, has_ends ? pass_ends : nullptr);
   return rayhit.ray.tfar < 0;
 }
 

@@ -177,6 +177,7 @@ bool TwoLevel<Structure, Test>::search(const Structure& structure, const Placed*
         const auto lane = lowest(lanes);
         const RawHit hit{found.t[lane], found.u[lane], found.v[lane],
                          placed ? placed->instance : block.instance[lane], block.primitive[lane]};
+        if (is_at_end(world, hit)) continue;
         const bool filtered = geometry.filter && geometry.instances[hit.instance].filtered;
         if (filtered && !geometry.filter->accept(world, hit)) continue;
         if (hits.offer(hit)) return true;

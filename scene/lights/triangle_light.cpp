@@ -39,7 +39,7 @@ std::optional<LightSample> TriangleLight::sample(const SurfacePoint& from, const
   const Rgb radiance = emission(barycentrics, cosine > 0, -wi);
   if (cosine == 0 || is_black(radiance)) return std::nullopt;
   const float pdf = distance2 / (std::abs(cosine) * area_);
-  return LightSample{wi, radiance, pdf, false, from.spawn_to(on, error_, normal_)};
+  return LightSample{wi, radiance, pdf, false, from.spawn_to(on, error_, normal_, {instance_, primitive_})};
 }
 
 LightEval TriangleLight::eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const {

@@ -53,6 +53,27 @@ TEST_P(Queries, ListsAllHitsByDistanceEachTriangleOnce) {
   EXPECT_EQ(hits[0].instance, 1u);
 }
 
+TEST_P(Queries, PassesTheTrianglesAtTheEndsOfTheRay) {
+  Sheets sheets;
+  const auto accelerator = build(sheets.soup);
+  Ray ray = make_ray(above, down, 0, 2.5f);  // sheets 2 and 1
+  ray.leaves = {2, 0};
+  const auto hit = accelerator->closest(ray);
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit->instance, 1u);
+  EXPECT_TRUE(accelerator->occluded(ray));
+  std::vector<RawHit> hits;
+  accelerator->all_hits(ray, hits);
+  EXPECT_EQ(hits.size(), 1u);
+  ray.reaches = {1, 0};
+  EXPECT_FALSE(accelerator->closest(ray));
+  EXPECT_FALSE(accelerator->occluded(ray));
+  accelerator->all_hits(ray, hits);
+  EXPECT_TRUE(hits.empty());
+  ray.reaches = {1, 1};  // the other half of the sheet is not the one met
+  EXPECT_TRUE(accelerator->occluded(ray));
+}
+
 TEST_P(Queries, TakesTheIntervalAsOpen) {
   Sheets sheets;
   const auto accelerator = build(sheets.soup);

@@ -27,15 +27,14 @@ Count over_places(uint64_t rays, const Measure& leaks) {
 }
 
 /// The scales and the distances from the origin at which spawned rays are looked at.
-std::vector<SpawnCase> spawn_cases(bool instanced) {
+std::vector<SpawnCase> spawn_cases(bool instanced, bool copied = false) {
   std::vector<SpawnCase> cases;
-  for (const float scale : {1e-6f, 1e-3f, 1.f, 1e3f, 1e6f}) cases.push_back({scale, 0, instanced});
-  for (const float offset : {1e3f, 1e5f, 1e7f}) cases.push_back({1, offset, instanced});
+  for (const float scale : {1e-6f, 1e-3f, 1.f, 1e3f, 1e6f}) cases.push_back({scale, 0, instanced, copied});
+  for (const float offset : {1e3f, 1e5f, 1e7f}) cases.push_back({1, offset, instanced, copied});
   return cases;
 }
 
-Count all_self_hits(BuildAccelerator build, bool instanced, uint64_t rays) {
-  const auto cases = spawn_cases(instanced);
+Count all_self_hits(BuildAccelerator build, const std::vector<SpawnCase>& cases, uint64_t rays) {
   Count sum;
   for (const SpawnCase& c : cases) sum += self_hits(build, c, rays / cases.size(), 1);
   return sum;
@@ -150,11 +149,15 @@ constexpr std::array table{
                return Figure(worst_barycentric(hit_errors(e.build, .1f, 0, n, 14)));
              },
              some},
-    HardCase{"self-hits",
-             "spawned rays that hit what they leave, scales 10^-6 to 10^6, offsets to 10^7, per 10^6",
-             [](const Entry& e, uint64_t n) { return Figure(all_self_hits(e.build, false, n)); }},
+    HardCase{
+        "self-hits", "spawned rays that hit what they leave, scales 10^-6 to 10^6, offsets to 10^7, per 10^6",
+        [](const Entry& e, uint64_t n) { return Figure(all_self_hits(e.build, spawn_cases(false), n)); }},
     HardCase{"self-hits-instanced", "the same through rotated and stretched instances",
-             [](const Entry& e, uint64_t n) { return Figure(all_self_hits(e.build, true, n)); }},
+             [](const Entry& e, uint64_t n) { return Figure(all_self_hits(e.build, spawn_cases(true), n)); }},
+    HardCase{"copy-hits", "spawned rays that hit a copy of what they leave, in the same place, per 10^6",
+             [](const Entry& e, uint64_t n) {
+               return Figure(all_self_hits(e.build, spawn_cases(false, true), n));
+             }},
     HardCase{"gap", "narrowest gap that no spawned ray jumps, in ulps of the largest coordinate",
              [](const Entry& e, uint64_t n) { return Figure(widest_lost_gap(e.build, n)); }, some},
     HardCase{"phantoms", "hits by invalid rays, in a triangle's plane and on degenerate triangles, per 10^6",

@@ -40,8 +40,8 @@ Vec3f leaving(const Vec3f& normal, float cosine, Dice& dice) {
   return frame.to_world({sine * std::cos(angle), sine * std::sin(angle), cosine});
 }
 
-/// A ray at a random point inside triangle 0 from a few times its size away; empty when that is not what it
-/// hits.
+/// A ray at a random point inside triangle 0 (or its copy) from a few times its size away; empty when that is
+/// not what it hits.
 std::optional<SurfacePoint> point_on(const SceneGeometry& scene, const Accelerator& accelerator, float scale,
                                      Dice& dice) {
   const auto c = scene.triangle(0, 0);
@@ -51,7 +51,7 @@ std::optional<SurfacePoint> point_on(const SceneGeometry& scene, const Accelerat
   ray.origin = target + dice.direction() * (scale * dice.magnitude(.1f, 30));
   ray.direction = normalize(target - ray.origin);
   const auto hit = accelerator.closest(ray);
-  if (!hit || hit->instance != 0 || hit->primitive != 0) return {};
+  if (!hit || hit->instance != 0) return {};
   return scene.surface_point(ray, *hit);
 }
 
@@ -71,7 +71,8 @@ Count self_hits(BuildAccelerator build, const SpawnCase& spawn_case, uint64_t ra
     }
     const Vec3f stretch{1, dice.magnitude(.1f, 10), dice.magnitude(.1f, 10)};
     const Transform to_world = spawn_case.instanced ? random_placement(dice, stretch, center) : Transform{};
-    const SceneGeometry scene = make_scene(positions, {{0, 1, 2}}, to_world, spawn_case.instanced);
+    std::vector<Triangle> triangles(spawn_case.copied ? 2 : 1, Triangle{0, 1, 2});
+    const SceneGeometry scene = make_scene(positions, std::move(triangles), to_world, spawn_case.instanced);
     const auto accelerator = build(scene.view());
     Count result;
     std::vector<RawHit> hits;
