@@ -38,8 +38,15 @@ Bounds WideNode::bounds() const {
 
 namespace {
 
-constexpr unsigned bin_count = 16;
+constexpr unsigned most_bins = 16;
 constexpr size_t parallel_size = 1 << 14;  ///< below this many items a task costs more than it saves
+
+/// parallel_reduce over [0, size), without a task where there is too little to share.
+template <typename Value, typename Extend, typename Join>
+Value reduce(size_t size, const Value& identity, const Extend& extend, const Join& join) {
+  const tbb::blocked_range<size_t> all(0, size, parallel_size);
+  return size <= parallel_size ? extend(all, identity) : tbb::parallel_reduce(all, identity, extend, join);
+}
 
 /// Some of the items, together in memory.
 struct Range {
@@ -66,8 +73,7 @@ void measure(Range& range) {
     a.centroids.add(b.centroids);
     return a;
   };
-  const Boxes all = tbb::parallel_reduce(tbb::blocked_range<size_t>(0, range.items.size(), parallel_size),
-                                         Boxes{}, extend, join);
+  const Boxes all = reduce(range.items.size(), Boxes{}, extend, join);
   range.box = all.box;
   range.centroids = all.centroids;
 }
@@ -78,15 +84,19 @@ struct Bin {
 
   void add(const Bin& b) { box.add(b.box), count += b.count; }
 };
-using Bins = std::array<std::array<Bin, bin_count>, 3>;
+using Bins = std::array<std::array<Bin, most_bins>, 3>;
 
-/// Which bin a centre falls in, along each axis that has an extent.
+/// Which bin a centre falls in, along each axis that has an extent. Few items need few bins, and most splits
+/// are of few items.
 struct Binning {
+  unsigned bin_count;
   Vec3f lower, scale;
 
-  explicit Binning(const Bounds& centroids) : lower(centroids.lower) {
+  explicit Binning(const Range& range)
+      : bin_count(static_cast<unsigned>(std::min<size_t>(most_bins, 4 + range.items.size() / 8))),
+        lower(range.centroids.lower) {
     for (int axis = 0; axis < 3; ++axis) {
-      scale[axis] = bin_count / (centroids.upper[axis] - centroids.lower[axis]);
+      scale[axis] = static_cast<float>(bin_count) / (range.centroids.upper[axis] - lower[axis]);
       if (!std::isfinite(scale[axis])) scale[axis] = 0;
     }
   }
@@ -105,10 +115,10 @@ Bins fill_bins(std::span<const BuildItem> items, const Binning& binning) {
   };
   const auto join = [](Bins a, const Bins& b) {
     for (int axis = 0; axis < 3; ++axis)
-      for (unsigned i = 0; i < bin_count; ++i) a[axis][i].add(b[axis][i]);
+      for (unsigned i = 0; i < most_bins; ++i) a[axis][i].add(b[axis][i]);
     return a;
   };
-  return tbb::parallel_reduce(tbb::blocked_range<size_t>(0, items.size(), parallel_size), Bins{}, fill, join);
+  return reduce(items.size(), Bins{}, fill, join);
 }
 
 struct Split {
@@ -117,13 +127,13 @@ struct Split {
   float cost = std::numeric_limits<float>::infinity();
 };
 
-Split best_split(const Bins& bins, unsigned leaf_size) {
+Split best_split(const Bins& bins, unsigned bin_count, unsigned leaf_size) {
   const auto cost = [&](const Bin& side) {
     return side.box.half_area() * static_cast<float>((side.count + leaf_size - 1) / leaf_size);
   };
   Split best;
   for (int axis = 0; axis < 3; ++axis) {
-    std::array<float, bin_count> left_cost{};
+    std::array<float, most_bins> left_cost{};
     Bin left, right;
     for (unsigned i = 0; i + 1 < bin_count; ++i) {
       left.add(bins[axis][i]);
@@ -142,9 +152,10 @@ Split best_split(const Bins& bins, unsigned leaf_size) {
 /// plane (centres that coincide or overflow) or the tree gets too deep.
 std::pair<Range, Range> split(Range& range, unsigned leaf_size) {
   constexpr unsigned sah_depth = 64;  // log2 of the number of items may follow below
-  const Binning binning(range.centroids);
+  const Binning binning(range);
   Split best;
-  if (range.depth < sah_depth) best = best_split(fill_bins(range.items, binning), leaf_size);
+  if (range.depth < sah_depth)
+    best = best_split(fill_bins(range.items, binning), binning.bin_count, leaf_size);
   size_t middle = range.items.size() / 2;
   if (best.axis >= 0) {
     const auto is_left = [&](const BuildItem& item) {
