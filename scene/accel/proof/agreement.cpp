@@ -15,8 +15,8 @@ bool is_same(const std::optional<RawHit>& a, const std::optional<RawHit>& b) {
   return a->instance == b->instance && a->primitive == b->primitive;
 }
 
-/// Whether no triangle is hit for sure before `t`, nor this one denied: the answer may differ by rounding
-/// alone.
+/// Whether rounding alone may make the two answers differ: one of them lies at a triangle's boundary or at an
+/// end of the ray's interval, or both at the same distance.
 bool is_excused(const Soup& soup, const Ray& ray, const std::optional<RawHit>& a,
                 const std::optional<RawHit>& b) {
   const auto near_boundary = [&](const std::optional<RawHit>& hit) {
@@ -30,11 +30,10 @@ bool is_excused(const Soup& soup, const Ray& ray, const std::optional<RawHit>& a
     const ExactHit e = exact(hit);
     return std::abs(e.t - ray.t_min) <= e.t_bound || std::abs(e.t - ray.t_max) <= e.t_bound;
   };
-  if (a && b) {
-    const ExactHit ea = exact(*a), eb = exact(*b);
-    return std::abs(ea.t - eb.t) <= ea.t_bound + eb.t_bound;
-  }
-  return at_end(a ? *a : *b);
+  if ((a && at_end(*a)) || (b && at_end(*b))) return true;
+  if (!a || !b) return false;
+  const ExactHit ea = exact(*a), eb = exact(*b);
+  return std::abs(ea.t - eb.t) <= ea.t_bound + eb.t_bound;
 }
 
 Ray random_ray(const Soup& soup, Dice& dice) {
