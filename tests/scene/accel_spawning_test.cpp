@@ -30,12 +30,11 @@ TEST_P(SpawnedRays, DoesNotHitWhatARayLeaves) {
   }
 }
 
-// What the offset of the origin does by itself. No bound on rounding covers slivers, beside which a test now
-// and then reports a point: Embree's and Moeller's outside their boxes, the watertight one within, so that
-// only boxes keep it from them.
+// What the offset of the origin does by itself. No bound on rounding covers slivers, so one of the scenes, of
+// 250 rays each, may be lost. Without the share of the triangle's size, a tenth of the rays that leave
+// coordinate planes would be, 500 of 20,000.
 TEST_P(SpawnedRays, SeldomHitsACopyOfWhatARayLeaves) {
-  const bool boxed = GetParam().watertight == Watertight::at_edges_and_vertices;
-  const uint64_t most = GetParam().name == "brute_force" ? 60 : boxed ? 0 : 20;
+  constexpr uint64_t most = 250;
   for (SpawnCase c : spawn_cases()) {
     c.copied = true;
     const Count hits = self_hits(GetParam().build, c, rays, 1);
