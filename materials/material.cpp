@@ -226,6 +226,15 @@ Rgb Material::emission(const SurfaceAttributes& attributes, bool front, float co
   return radiance;
 }
 
+float Material::emissive_texels(const std::array<SurfaceAttributes, 3>& corners) const {
+  const TextureUse& use = description_.emissive_texture;
+  if (!use) return 0;
+  const auto at = [&](size_t i) { return transform_uv(use, corners[i].uv[size_t(use.texcoord)]); };
+  const Vec2f a = at(1) - at(0), b = at(2) - at(0);
+  const Image8& image = textures_[size_t(use.texture)].image();
+  return std::abs(a.x * b.y - a.y * b.x) / 2 * float(image.width) * float(image.height);
+}
+
 float Material::coverage(const SurfaceAttributes& attributes) const {
   if (description_.alpha_mode == AlphaMode::opaque) return 1;
   const float alpha = base_color(attributes).w;

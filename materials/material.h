@@ -59,6 +59,10 @@ class Material {
   bool has_coat() const { return description_.clearcoat > 0; }
 
   bool is_emissive() const { return is_emissive_; }
+  /// The emission is the same at every point and to every direction of a side.
+  bool emits_evenly() const { return !description_.unlit && !description_.emissive_texture && !has_coat(); }
+  /// About how many texels of the emissive texture lie within a triangle with these corners; 0: no texture.
+  float emissive_texels(const std::array<SurfaceAttributes, 3>& corners) const;
   /// Emits, but is no light: seen by rays that happen to meet it (KHR_materials_unlit).
   bool is_unlit() const { return description_.unlit; }
   bool is_opaque() const { return description_.alpha_mode == AlphaMode::opaque; }

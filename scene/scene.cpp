@@ -79,14 +79,21 @@ void Scene::collect_lights(const SceneDescription& description) {
   for (uint32_t i = 0; i < geometry_.instance_count(); ++i) {
     const Material& material = materials_[material_of_instance_[i]];
     if (!material.is_emissive() || material.is_unlit()) continue;
-    std::vector<std::unique_ptr<Light>> candidates(geometry_.triangle_count(i));
+    std::vector<std::unique_ptr<TriangleLight>> candidates(geometry_.triangle_count(i));
     parallel_for(candidates.size(), [&](size_t primitive) {
       auto light = std::make_unique<TriangleLight>(geometry_, material, i, uint32_t(primitive));
       if (light->power(bounds()) > 0) candidates[primitive] = std::move(light);
     });
     triangle_lights_[i].assign(candidates.size(), -1);
-    for (size_t primitive = 0; primitive < candidates.size(); ++primitive)
-      if (candidates[primitive]) triangle_lights_[i][primitive] = add(std::move(candidates[primitive]));
+    for (size_t primitive = 0; primitive < candidates.size(); ++primitive) {
+      if (!candidates[primitive]) continue;
+      // The halves of a quad follow each other in what programs write.
+      const size_t next = primitive + 1;
+      const bool joined =
+          next < candidates.size() && candidates[next] && candidates[primitive]->join(*candidates[next]);
+      triangle_lights_[i][primitive] = add(std::move(candidates[primitive]));
+      if (joined) triangle_lights_[i][next] = triangle_lights_[i][primitive++];
+    }
   }
   for (const auto& punctual : description.lights) {
     auto light = std::make_unique<PunctualLight>(punctual, bounds());

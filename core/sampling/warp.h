@@ -53,4 +53,10 @@ inline Vec2f sample_triangle(const Vec2f& u) {
   return {x, y};
 }
 
+/// The u that sample_triangle() maps to these barycentrics.
+inline Vec2f invert_sample_triangle(const Vec2f& barycentrics) {
+  const float sum = barycentrics.x + barycentrics.y;
+  return barycentrics.y > barycentrics.x ? Vec2f(2 * barycentrics.x, sum) : Vec2f(sum, 2 * barycentrics.y);
+}
+
 }  // namespace vernier

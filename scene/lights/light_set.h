@@ -9,8 +9,8 @@
 
 namespace vernier {
 
-/// All lights of a scene, and the choice among them: a few in proportion to power, many by a tree that knows
-/// where they are.
+/// All lights of a scene, and the choice among them: lights at infinity, and all others together, in
+/// proportion to power; those with a place by a tree that knows where they are.
 class LightSet {
  public:
   LightSet() = default;
@@ -33,8 +33,8 @@ class LightSet {
   const Light& operator[](size_t i) const { return *lights_[i]; }
 
  private:
-  /// Below this many lights with a place the tree costs more than it saves.
-  static constexpr size_t tree_threshold = 8;
+  /// With so many lights that have a place there is something to choose.
+  static constexpr size_t tree_threshold = 2;
 
   std::vector<std::unique_ptr<Light>> lights_;
   std::vector<const Light*> delta_lights_;

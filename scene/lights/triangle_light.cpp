@@ -1,9 +1,67 @@
 #include "scene/lights/triangle_light.h"
 
+#include "core/sampling/spherical_triangle.h"
 #include "core/sampling/warp.h"
 #include "scene/emission.h"
 
 namespace vernier {
+namespace {
+
+Vec3f doubled_area(const Vec3f& a, const Vec3f& b, const Vec3f& c) { return cross(b - a, c - a); }
+
+}  // namespace
+
+/// The light as one point sees it. Places on it are drawn and their densities told from here alone, so that
+/// the two cannot differ.
+class TriangleLight::View {
+ public:
+  View(const TriangleLight& light, const Vec3f& from) : light_(light) {
+    const auto& [a, b, c] = light.corners_;
+    is_dark_ = !light.material_->double_sided() && !(dot(from - a, light.normal_) > 0);
+    const Vec3f center = light.opposite_ ? (b + c) * 0.5f : (a + b + c) * (1 / 3.f);
+    if (is_dark_ || length_squared(center - from) > light.near2_) return;
+    is_near_ = true;
+    first_ = SphericalTriangle(a - from, b - from, c - from, doubled_area(a, b, c));
+    solid_angle_ = first_.solid_angle();
+    if (!light.opposite_) return;
+    // Its arcs go on where those of the first end.
+    const Vec3f& d = *light.opposite_;
+    second_ = SphericalTriangle(c - from, b - from, d - from, doubled_area(c, b, d));
+    solid_angle_ += second_.solid_angle();
+  }
+
+  /// Whether it certainly sends no light here.
+  bool is_dark() const { return is_dark_ || (is_near_ && solid_angle_ == 0); }
+
+  /// Barycentrics of the second and third corner; beyond the line between them in a parallelogram's other
+  /// half.
+  Vec2f sample(const Vec2f& u) const {
+    if (!is_near_) {
+      if (light_.opposite_) return u;
+      float pdf = 1;
+      return sample_triangle(light_.texture_.empty() ? u : light_.texture_.sample(u, pdf));
+    }
+    if (!light_.opposite_) return first_.sample(u);
+    const float share = first_.solid_angle() / solid_angle_;
+    if (u.x < share) return first_.sample({u.x / share, u.y});
+    const Vec2f other = second_.sample({(u.x - share) / (1 - share), u.y});
+    return {other.x + other.y, 1 - other.x};
+  }
+
+  /// Density per solid angle of a place at that distance whose normal makes that angle; 0: never drawn.
+  float pdf(const Vec2f& place, float distance2, float cosine) const {
+    if (is_dark() || cosine == 0) return 0;
+    if (is_near_) return 1 / solid_angle_;
+    const float by_area = distance2 / (cosine * light_.area_);
+    return light_.texture_.empty() ? by_area : by_area * light_.texture_.pdf(invert_sample_triangle(place));
+  }
+
+ private:
+  const TriangleLight& light_;
+  bool is_dark_ = false, is_near_ = false;
+  SphericalTriangle first_, second_;
+  float solid_angle_ = 0;
+};
 
 TriangleLight::TriangleLight(const SceneGeometry& geometry, const Material& material, uint32_t instance,
                              uint32_t primitive)
@@ -12,66 +70,126 @@ TriangleLight::TriangleLight(const SceneGeometry& geometry, const Material& mate
       instance_(instance),
       primitive_(primitive),
       corners_(geometry.triangle(instance, primitive)),
-      area_(length(cross(corners_[1] - corners_[0], corners_[2] - corners_[0])) / 2) {
+      area_(length(doubled_area(corners_[0], corners_[1], corners_[2])) / 2) {
   const SurfacePoint first = geometry.surface_point(instance, primitive, {0, 0});
   normal_ = first.ng;
+  const auto& [a, b, c] = corners_;
+  near2_ = std::max({length_squared(b - a), length_squared(c - b), length_squared(a - c)});
   // The bound is linear in the barycentrics, so it is largest at a corner.
   error_ = max(first.error, max(geometry.surface_point(instance, primitive, {1, 0}).error,
                                 geometry.surface_point(instance, primitive, {0, 1}).error));
-  power_ = mean_power();
+  measure_emission();
+}
+
+bool TriangleLight::join(const TriangleLight& other) {
+  if (!material_->emits_evenly() || opposite_ || other.opposite_) return false;
+  for (size_t i = 0; i < 3; ++i)
+    for (size_t j = 0; j < 3; ++j) {
+      const Vec3f a = corners_[i], b = corners_[(i + 1) % 3], c = corners_[(i + 2) % 3];
+      const Vec3f d = other.corners_[j];
+      if (other.corners_[(j + 1) % 3] != c || other.corners_[(j + 2) % 3] != b) continue;
+      const Vec3f off = abs((b - a) - (d - c));
+      // No more than rounding of the corners explains.
+      const Vec3f tolerance = max(error_, other.error_);
+      if (!(off.x <= tolerance.x && off.y <= tolerance.y && off.z <= tolerance.z)) return false;
+      corners_ = {a, b, c};
+      opposite_ = d;
+      opposite_primitive_ = other.primitive_;
+      near2_ = std::max({near2_, other.near2_, length_squared(d - a)});
+      error_ = tolerance;
+      area_ += other.area_;
+      power_ += other.power_;
+      return true;
+    }
+  return false;
+}
+
+Vec3f TriangleLight::at(const Vec2f& place) const {
+  const auto& [a, b, c] = corners_;
+  const float rest = 1 - place.x - place.y;
+  if (opposite_ && rest < 0) return *opposite_ * -rest + c * (1 - place.x) + b * (1 - place.y);
+  return a * rest + b * place.x + c * place.y;
+}
+
+TriangleId TriangleLight::triangle_at(const Vec2f& place) const {
+  return {instance_, opposite_ && place.x + place.y > 1 ? opposite_primitive_ : primitive_};
 }
 
 Rgb TriangleLight::emission(const Vec2f& barycentrics, bool front, const Vec3f& wo) const {
-  if (!material_->needs_attributes() && !material_->has_coat()) return material_->emission({}, front, 1);
+  if (material_->emits_evenly()) return material_->emission({}, front, 1);
   const SurfacePoint point = geometry_->surface_point(instance_, primitive_, barycentrics);
   return vernier::emission(*geometry_, *material_, point, front, wo);
 }
 
 std::optional<LightSample> TriangleLight::sample(const SurfacePoint& from, const Vec2f& u) const {
-  const Vec2f barycentrics = sample_triangle(u);
-  const Vec3f on = corners_[0] * (1 - barycentrics.x - barycentrics.y) + corners_[1] * barycentrics.x +
-                   corners_[2] * barycentrics.y;
+  const View view(*this, from.position);
+  if (view.is_dark()) return std::nullopt;
+  const Vec2f place = view.sample(u);
+  const Vec3f on = at(place);
   const Vec3f to_light = on - from.position;
   const float distance2 = length_squared(to_light);
   if (!(distance2 > 0)) return std::nullopt;
   const Vec3f wi = to_light * (1 / std::sqrt(distance2));
   const float cosine = -dot(wi, normal_);
-  const Rgb radiance = emission(barycentrics, cosine > 0, -wi);
-  if (cosine == 0 || is_black(radiance)) return std::nullopt;
-  const float pdf = distance2 / (std::abs(cosine) * area_);
-  return LightSample{wi, radiance, pdf, false, from.spawn_to(on, error_, normal_, {instance_, primitive_})};
+  const Rgb radiance = emission(place, cosine > 0, -wi);
+  const float pdf = view.pdf(place, distance2, std::abs(cosine));
+  if (!(pdf > 0) || is_black(radiance)) return std::nullopt;
+  return LightSample{wi, radiance, pdf, false, from.spawn_to(on, error_, normal_, triangle_at(place))};
 }
 
 LightEval TriangleLight::eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const {
+  const Vec2f place(on->u, on->v);
+  const Rgb radiance = emission(place, on->front, -wi);
+  if (is_black(radiance)) return {radiance, 0};
   const float distance2 = length_squared(on->position - from.position);
-  const float cosine = std::abs(dot(wi, on->ng));
-  const Rgb radiance = emission({on->u, on->v}, on->front, -wi);
-  if (cosine == 0 || is_black(radiance)) return {radiance, 0};
-  return {radiance, distance2 / (cosine * area_)};
+  return {radiance, View(*this, from.position).pdf(place, distance2, std::abs(dot(wi, on->ng)))};
 }
 
 std::optional<LightBounds> TriangleLight::bounds() const {
   LightBounds bounds;
   for (const Vec3f& corner : corners_) bounds.box.add(corner);
+  if (opposite_) bounds.box.add(*opposite_);
   bounds.axis = normal_;
   bounds.power = power_;
   bounds.two_sided = material_->double_sided();
   return bounds;
 }
 
-float TriangleLight::mean_power() const {
-  // Mean emission over a fixed lattice: fine enough to find a lit patch of a few percent of the triangle; one
-  // that it misses is no light, and BSDF sampling alone finds it.
-  constexpr int steps = 12;
-  Rgb sum(0, 0, 0);
-  int count = 0;
-  for (int i = 0; i < steps; ++i)
-    for (int j = 0; j < steps - i; ++j, ++count) {
-      const Vec2f barycentrics((float(i) + 1 / 3.f) / steps, (float(j) + 1 / 3.f) / steps);
-      for (const bool front : {true, false}) sum += emission(barycentrics, front, normal_);
-      if (!material_->needs_attributes()) return pi * area_ * luminance(sum);
+void TriangleLight::measure_emission() {
+  // The bound on cells keeps meshes of very many triangles small in memory.
+  constexpr float most_cells = 1 << 22;
+  std::array<SurfaceAttributes, 3> corners;
+  if (material_->needs_attributes())
+    corners = {geometry_->attributes(geometry_->surface_point(instance_, primitive_, {0, 0})),
+               geometry_->attributes(geometry_->surface_point(instance_, primitive_, {1, 0})),
+               geometry_->attributes(geometry_->surface_point(instance_, primitive_, {0, 1}))};
+  const float limit = std::clamp(most_cells / float(geometry_->triangle_count(instance_)), 1.f, 1024.f);
+  const float texels = material_->emissive_texels(corners);
+  const int cells = texels > 1 ? int(std::sqrt(std::min(texels, limit))) : 1;  // a side
+  const int steps = material_->emits_evenly() ? 1 : std::max(2, 12 / cells);   // readings across a cell
+  std::vector<float> values(size_t(cells) * cells);
+  double sum = 0, squares = 0;
+  for (int y = 0; y < cells; ++y)
+    for (int x = 0; x < cells; ++x) {
+      Rgb total(0, 0, 0);
+      for (int i = 0; i < steps * steps; ++i) {
+        const Vec2f u((float(x * steps + i % steps) + 0.5f) / float(cells * steps),
+                      (float(y * steps + i / steps) + 0.5f) / float(cells * steps));
+        for (const bool front : {true, false}) total += emission(sample_triangle(u), front, normal_);
+      }
+      float& value = values[size_t(y) * cells + x];
+      value = luminance(total) / float(steps * steps);
+      sum += value;
+      squares += double(value) * value;
     }
-  return pi * area_ * luminance(sum) / float(count);
+  const double mean = sum / double(values.size());
+  power_ = pi * area_ * float(mean);
+  // As even as this, it is not worth a table.
+  if (!(squares / double(values.size()) > 1.1 * mean * mean)) return;
+  // What the readings missed is found by this part of the samples.
+  for (float& value : values) value += 0.1f * float(mean);
+  texture_ = Distribution2D(values, cells, cells);
+  near2_ = 0;
 }
 
 }  // namespace vernier

@@ -127,5 +127,14 @@ TEST(Warp, DiskIsContinuousAcrossItsWedges) {
     }
 }
 
+TEST(Warp, TriangleInverts) {
+  test::Random random(3);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec2f u = random.next2(), back = invert_sample_triangle(sample_triangle(u));
+    ASSERT_NEAR(back.x, u.x, 1e-6);
+    ASSERT_NEAR(back.y, u.y, 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace vernier

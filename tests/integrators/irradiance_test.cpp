@@ -58,6 +58,40 @@ TEST(Irradiance, Rectangle) {
   expect_irradiance(scene, 0.7f, aside);
 }
 
+// Close to a panel that stands on the floor, and at its foot.
+TEST(Irradiance, NearRectangle) {
+  const Scene scene =
+      floor_scene().add(parallelogram({-1, 0, -0.5f}, {2, 0, 0}, {0, 1.5f, 0}), emitter(1)).build();
+  for (const double z : {0.3, 0.02}) {
+    const double closed = polygon_irradiance({{-1, 0, -z}, {1, 0, -z}, {1, 1.5, -z}, {-1, 1.5, -z}});
+    IntegratorOptions options;
+    options.max_depth = 2;
+    for (const LightSampling technique : {LightSampling::mis, LightSampling::light, LightSampling::bsdf}) {
+      options.light_sampling = technique;
+      EXPECT_TRUE(
+          sees(scene, *path(options), ray_through({0, 1, 3}, {0, 0, float(z) - 0.5f}), closed / pi_d, 1e-3))
+          << "technique " << int(technique) << " at " << z;
+    }
+  }
+}
+
+// A panel whose texture lights two of its sixteen squares.
+TEST(Irradiance, TexturedRectangle) {
+  MaterialDescription material = emitter(3);
+  material.emissive_texture.texture = 0;
+  std::vector<uint8_t> texels(16, 0);
+  texels[1] = texels[14] = 255;
+  const Scene scene = floor_scene()
+                          .texture(4, 4, texels)
+                          .add(parallelogram({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}), material)
+                          .build();
+  // Texel 1 is the second along the first edge, in the first row of the second; texel 14 the third in the
+  // last.
+  const double closed = 3 * (polygon_irradiance({{-0.5, 1, -1}, {0, 1, -1}, {0, 1, -0.5}, {-0.5, 1, -0.5}}) +
+                             polygon_irradiance({{0, 1, 0.5}, {0.5, 1, 0.5}, {0.5, 1, 1}, {0, 1, 1}}));
+  expect_irradiance(scene, 0, closed);
+}
+
 // On and off the axis of a disk of radius R at height h.
 TEST(Irradiance, Disk) {
   const double radius = 0.8, h = 1.5;

@@ -42,6 +42,7 @@ MeshDescription parallelogram(const Vec3f& corner, const Vec3f& a, const Vec3f& 
   MeshDescription mesh;
   mesh.positions = {corner, corner + a, corner + a + b, corner + b};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  mesh.texcoords[0] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   return mesh;
 }
 
@@ -99,6 +100,14 @@ SceneBuilder& SceneBuilder::add(MeshDescription mesh, const MaterialDescription&
 
 SceneBuilder& SceneBuilder::add(const PunctualLightDescription& light) {
   description_.lights.push_back(light);
+  return *this;
+}
+
+SceneBuilder& SceneBuilder::texture(int width, int height, const std::vector<uint8_t>& texels) {
+  auto image = std::make_shared<Image8>(width, height, 1);
+  image->values = texels;
+  description_.textures.emplace_back(std::move(image), WrapMode::clamp_to_edge, WrapMode::clamp_to_edge,
+                                     FilterMode::nearest);
   return *this;
 }
 

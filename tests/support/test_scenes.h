@@ -23,7 +23,7 @@ MaterialDescription plastic(float roughness);
 /// Clear boundary of a volume of index 1.5.
 MaterialDescription glass(float roughness);
 
-/// Parallelogram with the front toward cross(a, b).
+/// Parallelogram with the front toward cross(a, b); texture coordinates go from 0 to 1 along a and b.
 MeshDescription parallelogram(const Vec3f& corner, const Vec3f& a, const Vec3f& b);
 /// Closed box, fronts outward or inward.
 MeshDescription box(const Vec3f& lower, const Vec3f& upper, bool inward = false);
@@ -37,6 +37,8 @@ class SceneBuilder {
   SceneBuilder& add(MeshDescription mesh, const MaterialDescription& material,
                     const Transform& to_world = {});
   SceneBuilder& add(const PunctualLightDescription& light);
+  /// A texture of grey texels that does not interpolate; materials name them in the order added.
+  SceneBuilder& texture(int width, int height, const std::vector<uint8_t>& texels);
   /// Radiance as a function of the direction it comes from, on a picture of 2 height x height texels.
   SceneBuilder& environment(const std::function<float(const Vec3f&)>& radiance, int height = 64);
   Scene build(const std::string& accelerator = {});
