@@ -99,8 +99,13 @@ void print_text(const CompareFlags& flags, const Comparison& comparison) {
   if (!comparison.bias) return;
   line("mean x-r", fmt::format("{}, standard error {}", rgb(comparison.bias->mean_difference),
                                rgb(comparison.bias->mean_error)));
-  line("bias", comparison.bias->different() ? "the pictures have different expectations"
-                                            : "no difference of expectation found");
+  const bool different = comparison.bias->different();
+  if (comparison.denoised)
+    line("bias", different ? "the pictures differ by more than the errors after denoising that they tell"
+                           : "no difference found beyond the errors after denoising that they tell");
+  else
+    line("bias",
+         different ? "the pictures have different expectations" : "no difference of expectation found");
 }
 
 ExitCode run_compare(const CompareFlags& flags) {

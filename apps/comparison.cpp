@@ -45,13 +45,17 @@ struct MeasuredFile {
   const Image& mean;
   std::optional<Image> error, unreliable;
   double degrees;
+  bool denoised;
 
   MeasuredFile(const LayeredImage& file, const Image& rgb)
       : mean(rgb),
         error(file.layer("error")),
         unreliable(file.single("error.unreliable")),
-        degrees(error_degrees(file.metadata)) {}
-  MeasuredImage image() const { return {mean, *error, degrees, unreliable ? &*unreliable : nullptr}; }
+        degrees(error_degrees(file.metadata)),
+        denoised(file.metadata.contains("vernier:denoiser")) {}
+  MeasuredImage image() const {
+    return {mean, *error, degrees, unreliable ? &*unreliable : nullptr, denoised};
+  }
 };
 
 }  // namespace
@@ -74,6 +78,7 @@ Comparison compare_files(const std::string& picture, const std::string& referenc
   result.peak = r.linear ? result.difference.reference_largest : 1;
   if (options.flip) result.flip = r.linear ? hdr_flip(x_rgb, r_rgb) : flip(x_rgb, r_rgb);
   const MeasuredFile x_measured(x, x_rgb), r_measured(r, r_rgb);
+  result.denoised = x_measured.denoised || r_measured.denoised;
   if (x_measured.error && r_measured.error)
     result.bias = test_bias(x_measured.image(), r_measured.image(), options.bias_level, options.bias_block);
   return result;

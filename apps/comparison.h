@@ -27,6 +27,7 @@ struct Comparison {
   ImageDifference difference;
   std::optional<FlipResult> flip;
   std::optional<BiasTest> bias;  ///< when both files have an error layer
+  bool denoised = false;         ///< either picture: its error then includes what the filter did to it
 };
 
 /// Reads both files and measures. Throws Error(usage) when they cannot be compared.

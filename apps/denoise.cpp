@@ -18,6 +18,14 @@ struct DenoiseFlags {
   bool quiet = false;
 };
 
+/// What of a noisy picture goes into the denoised one's file.
+LayeredImage color_and_reliability(const LayeredImage& noisy) {
+  LayeredImage picture{noisy.rgb(), {"R", "G", "B"}, noisy.metadata, true};
+  if (const auto unreliable = noisy.single("error.unreliable"))
+    picture.append(*unreliable, {"error.unreliable"});
+  return picture;
+}
+
 ExitCode run_denoise(const DenoiseFlags& flags, const std::string& command_line) {
   if (flags.filter == "help") {
     for (const Denoiser& entry : denoisers()) fmt::print("{:<12} {}\n", entry.name, entry.description);
@@ -32,15 +40,17 @@ ExitCode run_denoise(const DenoiseFlags& flags, const std::string& command_line)
         "a denoised picture is scene-linear: name an .exr (render --denoise writes .png and .jpg too)");
   check_writable_image(flags.output);
   const ThreadLimit threads(flags.threads);
-  const LayeredImage picture = read_layers(flags.input);
-  if (!picture.linear)
+  const LayeredImage noisy = read_layers(flags.input);
+  if (!noisy.linear)
     throw Error(ErrorKind::input, flags.input, {},
                 "holds display values; expected scene-linear ones, as in .exr");
-  const Denoised denoised = denoise(picture, denoiser);
-  Metadata metadata = picture.metadata;
+  const Denoised denoised = denoise(noisy, denoiser);
+  LayeredImage picture = color_and_reliability(noisy);
+  put_into(picture, denoised);
+  Metadata& metadata = picture.metadata;
   for (const auto& [name, value] : denoised_metadata(denoiser, denoised.error)) metadata[name] = value;
   metadata["vernier:denoiseCommand"] = command_line;
-  write_exr(flags.output, denoised.picture, {"R", "G", "B"}, metadata);
+  write_exr(flags.output, picture.image, picture.channel_names, metadata);
   if (!flags.quiet)
     fmt::print("{}\n", one_line(fmt::format("wrote {}: {}x{}, {}", flags.output, picture.image.width,
                                             picture.image.height, denoised_text(denoiser, denoised.error))));

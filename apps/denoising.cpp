@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -34,9 +35,19 @@ Denoised denoise(const LayeredImage& picture, const Denoiser& denoiser) {
   const NoisyImage noisy{picture.rgb(), picture.layer("error"), picture.layer("albedo"), picture.layer("N")};
   const auto first = picture.layer("half1"), second = picture.layer("half2");
   if (!first || !second || !is_mean_of(noisy.color, *first, *second))
-    return {denoiser.filter(noisy), std::nullopt};
+    return {denoiser.filter(noisy), std::nullopt, std::nullopt};
   DenoisedHalves halves = denoise_halves(denoiser, half_of(noisy, *first), half_of(noisy, *second));
-  return {std::move(halves.picture), halves.error};
+  return {std::move(halves.picture), halves.error, std::move(halves.pixel_error)};
+}
+
+void put_into(LayeredImage& picture, const Denoised& denoised) {
+  for (std::string& name : picture.channel_names)
+    if (name.starts_with("error.") && (name != "error.unreliable" || !denoised.pixel_error))
+      name = "noisyE" + name.substr(1);
+  for (int y = 0; y < picture.image.height; ++y)
+    for (int x = 0; x < picture.image.width; ++x)
+      std::copy_n(denoised.picture.pixel(x, y), 3, picture.image.pixel(x, y));
+  if (denoised.pixel_error) picture.append(*denoised.pixel_error, {"error.R", "error.G", "error.B"});
 }
 
 std::string denoised_text(const Denoiser& denoiser, const std::optional<DenoisedError>& error) {

@@ -63,9 +63,7 @@ std::optional<Denoised> denoise_if_asked(const RenderRequest& request, LayeredIm
                                          Metadata& metadata) {
   if (!request.denoiser) return std::nullopt;
   Denoised denoised = denoise(picture, *request.denoiser);
-  for (int y = 0; y < picture.image.height; ++y)
-    for (int x = 0; x < picture.image.width; ++x)
-      std::copy_n(denoised.picture.pixel(x, y), 3, picture.image.pixel(x, y));
+  put_into(picture, denoised);
   metadata.merge(denoised_metadata(*request.denoiser, denoised.error));
   return denoised;
 }
@@ -145,7 +143,8 @@ ExitCode run_render(const RenderFlags& flags, const std::string& command_line) {
   auto stats = stats_json(report, flags, result, log);
   if (denoised) stats["denoised"] = denoised_json(*request.denoiser, denoised->error);
   if (!flags.stats.empty()) write_text_file(flags.stats, to_text(stats) + "\n");
-  if (!flags.report.empty()) write_text_file(flags.report, report_page(stats, result.film, request.display));
+  if (!flags.report.empty())
+    write_text_file(flags.report, report_page(stats, result.film, denoised, request.display));
   if (!flags.quiet) fmt::print("{}\n", summary_line(report, flags, result));
   if (!flags.quiet && denoised) fmt::print("{}\n", denoised_text(*request.denoiser, denoised->error));
   return result.reason == StopReason::interrupted ? ExitCode::stopped : ExitCode::done;

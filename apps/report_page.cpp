@@ -37,15 +37,14 @@ std::string stopped_by(const Json& stats) {
 }
 
 /// Square root of the channels' mean squared relative standard error, as --error counts it.
-Image relative_error(const Film& film, const ErrorLayers& layers) {
-  Image map(film.width(), film.height(), 1);
-  for (int y = 0; y < film.height(); ++y)
-    for (int x = 0; x < film.width(); ++x) {
-      const Vec3d value = film.pixel(x, y);
+Image relative_error(const Image& picture, const Image& error) {
+  Image map(picture.width, picture.height, 1);
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
       double sum = 0;
       for (int c = 0; c < 3; ++c) {
-        const double error = layers.standard_error.pixel(x, y)[c];
-        sum += error * error / (value[c] * value[c] + 0.01);
+        const double value = picture.pixel(x, y)[c], off = error.pixel(x, y)[c];
+        sum += off * off / (value * value + 0.01);
       }
       *map.pixel(x, y) = float(std::sqrt(sum / 3));
     }
@@ -59,26 +58,76 @@ Image sample_counts(const Film& film) {
   return map;
 }
 
-void add_key_figures(HtmlPage& page, const Json& stats) {
-  const Json& error = stats["error"];
-  page.key_figures(
-      {{"estimated error (relative RMSE)", percent(error["rel_rmse"])},
-       {"95 % interval", percent(error["low"]) + " to " + percent(error["high"])},
-       {"pixels not to be trusted", percent(error["unreliable"])},
-       {"samples a pixel", fmt::format("{:.4g}", stats["picture"]["samples_per_pixel"].get<double>())},
-       {"rendering", seconds(stats["seconds"]["render"])},
-       {"rays a second", count(stats["rays"]["per_second"])},
-       {"peak memory", format_bytes(stats["peak_memory_bytes"].get<double>())}});
+/// "3.5 to 3.9 %"
+std::string interval(const Json& error) {
+  if (!error.contains("low") || !error["low"].is_number()) return "not known";
+  return fmt::format("{:.3g} to {}", 100 * error["low"].get<double>(), percent(error["high"]));
 }
 
-void add_error_maps(HtmlPage& page, const Film& film) {
+/// "3.7 % (3.5 to 3.9 %)"
+std::string with_interval(const Json& error) {
+  if (!error.contains("rel_rmse") || !error["rel_rmse"].is_number()) return "not known";
+  return fmt::format("{} ({})", percent(error["rel_rmse"]), interval(error));
+}
+
+void add_key_figures(HtmlPage& page, const Json& stats) {
+  const Json& error = stats["error"];
+  std::vector<std::array<std::string, 2>> figures{
+      {"estimated error (relative RMSE)", percent(error["rel_rmse"])}, {"95 % interval", interval(error)}};
+  if (stats.contains("denoised")) {
+    const Json& denoised = stats["denoised"];
+    figures[0][0] = "estimated error as rendered";
+    figures.insert(figures.begin(),
+                   {{"estimated error, denoised (relative RMSE)",
+                     denoised.contains("rel_rmse") ? percent(denoised["rel_rmse"]) : "not known"},
+                    {"95 % interval", interval(denoised)}});
+  }
+  figures.insert(figures.end(), {{"pixels not to be trusted", percent(error["unreliable"])},
+                                 {"samples a pixel",
+                                  fmt::format("{:.4g}", stats["picture"]["samples_per_pixel"].get<double>())},
+                                 {"rendering", seconds(stats["seconds"]["render"])},
+                                 {"rays a second", count(stats["rays"]["per_second"])},
+                                 {"peak memory", format_bytes(stats["peak_memory_bytes"].get<double>())}});
+  page.key_figures(figures);
+}
+
+/// The picture; when there is a denoised one, that and the noisy one beside it, each with its error.
+void add_pictures(HtmlPage& page, const Json& stats, const Film& film,
+                  const std::optional<Denoised>& denoised, const DisplayOptions& display) {
+  const auto figure = [&](const Image& picture, const std::string& caption) {
+    return Figure{to_display(shrink(picture, longest_picture), display),
+                  fmt::format("{}View \"{}\"", caption, display.view)};
+  };
+  if (!denoised) {
+    page.figures({figure(film.image(), "")});
+    return;
+  }
+  const Json& error = stats["denoised"];
+  std::string noisy = "As rendered: estimated error " + with_interval(stats["error"]);
+  if (denoised->error)
+    noisy += fmt::format(", {} when measured like the denoised picture's", percent(error["rel_rmse_before"]));
+  page.figures(
+      {figure(denoised->picture, fmt::format("Denoised by {}: estimated error {}. ",
+                                             error["filter"].get<std::string>(), with_interval(error))),
+       figure(film.image(), noisy + ". ")});
+}
+
+void add_error_maps(HtmlPage& page, const Film& film, const std::optional<Denoised>& denoised) {
   page.section("Where it is uncertain");
   const ErrorLayers layers = error_layers(film);
-  const Image error = shrink(relative_error(film, layers), longest_map);
+  const Image error = shrink(relative_error(film.image(), layers.standard_error), longest_map);
   const Image counts = shrink(sample_counts(film), longest_map);
-  page.figures({map_figure(error, round_scale(error), "Estimated relative standard error", true),
-                map_figure(counts, round_scale(counts), "Samples", false),
-                {colormap(shrink(layers.unreliable, longest_map)), "Pixels not to be trusted: pale", false}});
+  const double scale = round_scale(error);
+  std::vector<Figure> figures{
+      map_figure(error, scale, "Estimated relative standard error", true),
+      map_figure(counts, round_scale(counts), "Samples", false),
+      {colormap(shrink(layers.unreliable, longest_map)), "Pixels not to be trusted: pale", false}};
+  if (denoised && denoised->pixel_error) {
+    const Image left = shrink(relative_error(denoised->picture, *denoised->pixel_error), longest_map);
+    figures.insert(figures.begin(), map_figure(left, scale, "The same after denoising, blur included", true));
+    std::swap(figures[0], figures[1]);
+  }
+  page.figures(figures);
   page.paragraph(
       "The error is that of sampling only. A pixel is not to be trusted when what is known of it comes from "
       "too "
@@ -142,6 +191,12 @@ void add_time_and_rays(HtmlPage& page, const Json& stats) {
                                           seconds(accelerator["build_seconds"]),
                                           format_bytes(accelerator["bytes"].get<double>()))},
               {"peak memory", format_bytes(stats["peak_memory_bytes"].get<double>())}});
+  if (stats.contains("resumed"))
+    page.paragraph(fmt::format(
+        "Rendering went on from {}, where {:.4g} samples a pixel and {} of rendering were done. They count "
+        "here; load, build, output and processor time are those of the last part.",
+        stats["resumed"]["file"].get<std::string>(), stats["resumed"]["samples_per_pixel"].get<double>(),
+        seconds(stats["resumed"]["seconds"])));
 }
 
 void add_scene(HtmlPage& page, const Json& stats) {
@@ -185,20 +240,22 @@ void add_notices(HtmlPage& page, const Json& stats) {
 void add_reproduction(HtmlPage& page, const Json& stats) {
   page.section("To do it again");
   page.command(stats["command"].get<std::string>());
+  if (stats.contains("resumed"))
+    page.paragraph("Without --resume the same command renders the same picture from the beginning.");
   add_machine(page, stats["machine"], stats["built_with"]);
 }
 
 }  // namespace
 
-std::string report_page(const Json& stats, const Film& film, const DisplayOptions& display) {
+std::string report_page(const Json& stats, const Film& film, const std::optional<Denoised>& denoised,
+                        const DisplayOptions& display) {
   const std::string scene = std::filesystem::path(stats["scene"]["file"].get<std::string>()).filename();
   HtmlPage page("Render of " + scene,
                 fmt::format("vernier {}, {} integrator, {} x {} pixels", stats["vernier"].get<std::string>(),
                             stats["picture"]["integrator"].get<std::string>(), film.width(), film.height()));
   add_key_figures(page, stats);
-  page.figures(
-      {{to_display(shrink(film.image(), longest_picture), display), "View \"" + display.view + "\""}});
-  add_error_maps(page, film);
+  add_pictures(page, stats, film, denoised, display);
+  add_error_maps(page, film, denoised);
   add_convergence(page, stats);
   add_time_and_rays(page, stats);
   add_scene(page, stats);

@@ -3,13 +3,16 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "apps/denoising.h"
 #include "core/image/display.h"
 #include "core/image/film.h"
 
 namespace vernier::apps {
 
 /// The page that `vernier render --report` writes: what --stats holds (docs/stats.md), for people, with the
-/// picture and maps of its error. `stats` itself is in it too, under the id "stats".
-std::string report_page(const nlohmann::ordered_json& stats, const Film& film, const DisplayOptions& display);
+/// picture and maps of its error; the denoised one too when there is one. `stats` itself is in it too, under
+/// the id "stats".
+std::string report_page(const nlohmann::ordered_json& stats, const Film& film,
+                        const std::optional<Denoised>& denoised, const DisplayOptions& display);
 
 }  // namespace vernier::apps

@@ -26,26 +26,37 @@ double sidak(double smallest, int count) { return -std::expm1(count * std::log1p
 
 // Sums of x - y and of its variance over pixels.
 struct Sums {
-  std::array<double, 3> difference{}, variance{};
+  std::array<double, 3> difference{};
+  std::array<double, 3> independent{};           // variance
+  std::array<double, 3> common_x{}, common_y{};  // standard errors of pixels that err together
   // Sum of squared variances over their degrees of freedom, for Welch and Satterthwaite's formula.
   std::array<double, 3> spread_of_variance{};
   int64_t pixels = 0;
 
   void add_pixel(const MeasuredImage& x, const MeasuredImage& y, size_t at);
   void add(const Sums& other);
+  double variance(size_t c) const { return independent[c] + squared(common_x[c]) + squared(common_y[c]); }
   double p_value() const;
 };
 
 void Sums::add_pixel(const MeasuredImage& x, const MeasuredImage& y, size_t at) {
   ++pixels;
   for (size_t c = 0; c < 3; ++c, ++at) {
-    const double vx = squared(double(x.error.values[at])), vy = squared(double(y.error.values[at]));
+    const auto add_error = [&](const MeasuredImage& image, double& common) {
+      const double error = image.error.values[at], squared_error = squared(error);
+      if (image.errs_together) {
+        common += error;
+      } else {
+        independent[c] += squared_error;
+        spread_of_variance[c] += squared(squared_error) / image.degrees;
+      }
+    };
+    add_error(x, common_x[c]);
+    add_error(y, common_y[c]);
     const double apart = double(x.mean.values[at]) - y.mean.values[at];
     const double largest = std::max(std::abs(x.mean.values[at]), std::abs(y.mean.values[at]));
     const double rounding = 2 * largest * std::numeric_limits<float>::epsilon();
     difference[c] += std::copysign(std::max(0.0, std::abs(apart) - rounding), apart);
-    variance[c] += vx + vy;
-    spread_of_variance[c] += squared(vx) / x.degrees + squared(vy) / y.degrees;
   }
 }
 
@@ -53,7 +64,9 @@ void Sums::add(const Sums& other) {
   pixels += other.pixels;
   for (size_t c = 0; c < 3; ++c) {
     difference[c] += other.difference[c];
-    variance[c] += other.variance[c];
+    independent[c] += other.independent[c];
+    common_x[c] += other.common_x[c];
+    common_y[c] += other.common_y[c];
     spread_of_variance[c] += other.spread_of_variance[c];
   }
 }
@@ -63,9 +76,9 @@ double Sums::p_value() const {
   double smallest = 1;
   for (size_t c = 0; c < 3; ++c) {
     if (difference[c] == 0) continue;
-    if (variance[c] == 0) return 0;
-    const double degrees = squared(variance[c]) / spread_of_variance[c];  // infinite for sure errors
-    smallest = std::min(smallest, student_p(std::abs(difference[c]) / std::sqrt(variance[c]), degrees));
+    if (variance(c) == 0) return 0;
+    const double degrees = squared(variance(c)) / spread_of_variance[c];  // infinite for sure errors
+    smallest = std::min(smallest, student_p(std::abs(difference[c]) / std::sqrt(variance(c)), degrees));
   }
   return sidak(smallest, 3);
 }
@@ -156,7 +169,7 @@ BiasTest test_bias(const MeasuredImage& x, const MeasuredImage& y, double level,
   if (total.pixels == 0) return result;
   for (size_t c = 0; c < 3; ++c) {
     result.mean_difference[c] = total.difference[c] / double(total.pixels);
-    result.mean_error[c] = std::sqrt(total.variance[c]) / double(total.pixels);
+    result.mean_error[c] = std::sqrt(total.variance(c)) / double(total.pixels);
   }
   result.mean_p = total.p_value();
   result.differing = count_rejected(std::move(p_values), level);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/image/convolve.h"
 #include "core/image/denoise_filters.h"
 
 namespace vernier {
@@ -18,6 +19,7 @@ constexpr Denoiser table[] = {
 
 constexpr double epsilon = 0.01;  // of the relative error, as in core/image/error_estimate.h
 constexpr int block = 32;         // pixels a side: wider than any filter's window
+constexpr int pool = 15;          // pixels a side over which the noise that is left is averaged
 
 double squared(double x) { return x * x; }
 
@@ -35,12 +37,16 @@ double truth_like(double a, double b, double denoised) {
   return confirmed > far * denoised ? confirmed : std::max(denoised, (a + b) / 6);
 }
 
+/// The squares of a channel's relative errors are its squared errors times this over 3.
+double relative_weight(float a, float b, float fa, float fb) {
+  return 1 / (squared(truth_like(a, b, 0.5 * (double(fa) + fb))) + epsilon);
+}
+
 /// What one pixel's halves a and b, filtered to fa and fb, say of its squared errors.
 void add_pixel(BlockSums& sums, const float* a, const float* b, const float* fa, const float* fb) {
   ++sums.pixels;
   for (int c = 0; c < 3; ++c) {
-    const double weight =
-        1 / (3 * (squared(truth_like(a[c], b[c], 0.5 * (double(fa[c]) + fb[c]))) + epsilon));
+    const double weight = relative_weight(a[c], b[c], fa[c], fb[c]) / 3;
     const double half_variance = squared(double(a[c]) - b[c]) / 2;
     // Each filtered half against the other half, which knows nothing of it: its own squared error and the
     // other's variance.
@@ -81,6 +87,29 @@ DenoisedError estimate(const std::vector<BlockSums>& blocks) {
   return {root(total.noisy / total.pixels), root(mean), root(mean - 1.96 * error), root(mean + 1.96 * error)};
 }
 
+/// The variance that is left, (fa - fb)^2 / 4, averaged about each pixel as a part of what the error is
+/// relative to, lest a lamp's is its dark surroundings', times one factor for the whole picture: its squared
+/// error over that variance, which lacks what the filter has blurred.
+Image pixel_errors(const Image& a, const Image& b, const Image& fa, const Image& fb, double rel_rmse) {
+  const auto weight = [&](size_t i) {
+    const double w = relative_weight(a.values[i], b.values[i], fa.values[i], fb.values[i]);
+    return std::isfinite(w) ? w : 1 / epsilon;
+  };
+  Image left(a.width, a.height, 3);
+  double sum = 0;
+  for (size_t i = 0; i < left.values.size(); ++i) {
+    const double relative = weight(i) * squared(double(fa.values[i]) - fb.values[i]) / 4;
+    left.values[i] = float(relative);
+    sum += relative;
+  }
+  const double factor = sum > 0 ? std::max(1.0, squared(rel_rmse) * double(left.values.size()) / sum) : 1;
+  const std::vector<float> mean(pool, 1.f / pool);
+  left = convolve(left, mean, mean);
+  for (size_t i = 0; i < left.values.size(); ++i)
+    left.values[i] = float(std::sqrt(factor * left.values[i] / weight(i)));
+  return left;
+}
+
 }  // namespace
 
 std::span<const Denoiser> denoisers() { return table; }
@@ -95,6 +124,7 @@ DenoisedHalves denoise_halves(const Denoiser& denoiser, const NoisyImage& first,
   for (size_t i = 0; i < fa.values.size(); ++i)
     result.picture.values[i] = 0.5f * (fa.values[i] + fb.values[i]);
   result.error = estimate(block_sums(a, b, fa, fb));
+  result.pixel_error = pixel_errors(a, b, fa, fb, result.error.rel_rmse);
   return result;
 }
 

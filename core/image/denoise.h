@@ -39,6 +39,9 @@ struct DenoisedError {
 struct DenoisedHalves {
   Image picture;  ///< mean of the two filtered halves
   DenoisedError error;
+  /// Of each value: what its pixel is probably off by, blur included. The shape is that of the noise left
+  /// over 15 x 15 pixels; the size is such that over the picture the squares add up to `error`.
+  Image pixel_error;
 };
 
 /// Filters each half by itself. The halves must be independent and of one expectation; layers may be shared.

@@ -3,6 +3,7 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -118,6 +119,17 @@ std::optional<Image> LayeredImage::single(const std::string& name) const {
   for (size_t i = 0; i < result.values.size(); ++i)
     result.values[i] = image.values[i * size_t(image.channels) + size_t(chosen)];
   return result;
+}
+
+void LayeredImage::append(const Image& more, const std::vector<std::string>& names) {
+  Image joined(image.width, image.height, image.channels + more.channels);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      float* out = std::copy_n(image.pixel(x, y), image.channels, joined.pixel(x, y));
+      std::copy_n(more.pixel(x, y), more.channels, out);
+    }
+  image = std::move(joined);
+  channel_names.insert(channel_names.end(), names.begin(), names.end());
 }
 
 LayeredImage read_layers(const std::string& path, const ImageLimits& limits) {

@@ -41,6 +41,8 @@ struct LayeredImage {
   std::optional<Image> layer(const std::string& name) const;
   /// The channel NAME as a picture of one channel; empty when it is missing.
   std::optional<Image> single(const std::string& name) const;
+  /// Adds the channels of a picture of the same size, which get these names.
+  void append(const Image& more, const std::vector<std::string>& names);
 
  private:
   int channel(const std::string& name) const;

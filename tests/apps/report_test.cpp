@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -52,6 +53,21 @@ TEST(Report, IsOneFileWithItsPictures) {
   EXPECT_TRUE(test::is_self_contained(page));
   EXPECT_THAT(page, HasSubstr("--size 24x16 --spp 32"));
   EXPECT_THAT(page, HasSubstr("ended by</th><td>all samples taken"));
+}
+
+TEST(Report, ShowsTheDenoisedPictureAndTheNoisyOne) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(run_vernier({"render", cornell_box, "-o", folder.file("a.png"), "--size", "24x16", "--spp", "32",
+                         "--denoise", "nlm", "--stats", folder.file("a.json"), "--report",
+                         folder.file("a.html"), "-q"})
+                .exit_code,
+            0);
+  const std::string page = test::read_file(folder.file("a.html"));
+  EXPECT_EQ(test::inline_pictures(page).size(), 6u);  // one more picture, and one more map of its error
+  const json stats = json::parse(test::read_file(folder.file("a.json")));
+  const auto percent = [](double part) { return fmt::format("{:.3g} %", 100 * part); };
+  EXPECT_THAT(page, HasSubstr("Denoised by nlm: estimated error " + percent(stats["denoised"]["rel_rmse"])));
+  EXPECT_THAT(page, HasSubstr("As rendered: estimated error " + percent(stats["error"]["rel_rmse"])));
 }
 
 TEST(Report, NamesCannotBreakThePage) {

@@ -114,6 +114,21 @@ TEST(BiasTest, MeanAndItsErrorByHand) {
   EXPECT_EQ(result.worst_x, 0);
 }
 
+TEST(BiasTest, ErrorsThatGoTogetherAddUp) {
+  Image x(2, 1, 3), y(2, 1, 3), ex(2, 1, 3), ey(2, 1, 3);
+  x.values = {1, 1, 1, 3, 1, 1};
+  y.values = {0, 1, 1, 1, 1, 1};
+  ex.values = {3, 3, 3, 4, 3, 3};
+  ey.values = {0, 0, 0, 12, 0, 0};
+  MeasuredImage filtered{x, ex};
+  filtered.errs_together = true;
+  const double error = std::sqrt(7.0 * 7 + 12 * 12);
+  EXPECT_NEAR(test_bias(filtered, {y, ey}).mean_error[0], error / 2, 1e-9);
+  // As one block: the sums differ by 3.
+  EXPECT_NEAR(test_bias(filtered, {y, ey}, 0.01, 2).smallest_p,
+              1 - std::pow(1 - std::erfc(3 / error / std::sqrt(2.0)), 3), 1e-6);
+}
+
 TEST(BiasTest, ExactValues) {
   Render a, b;
   std::fill(a.mean.values.begin(), a.mean.values.end(), 0.1f);
