@@ -3,6 +3,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "apps/checkpointing.h"
 #include "apps/choose_camera.h"
 #include "apps/commands.h"
 #include "apps/denoising.h"
@@ -94,12 +95,31 @@ SceneDescription load_scene(const RenderRequest& request, RenderReport& report) 
   return description;
 }
 
+/// Renders, and says on the way how far it is. With --report the processor is watched.
+RenderResult trace(const Scene& scene, const Camera& camera, const RenderRequest& request,
+                   RenderReport& report, RenderHooks hooks) {
+  const StopSignals signals;
+  ProgressReporter progress(request.progress, report.options);
+  std::optional<Profiler> profiler;
+  if (!request.flags.report.empty()) profiler.emplace();
+  hooks.observe = [&](const RenderProgress& state) { progress.update(state); };
+  RenderResult result =
+      render(scene, camera, *request.integrator, report.options, signals.stop(), std::move(hooks));
+  if (profiler) {
+    profiler->stop();
+    report.profile = profiler->parts();
+    report.profile_samples = profiler->samples();
+  }
+  return result;
+}
+
 ExitCode run_render(const RenderFlags& flags, const std::string& command_line) {
   if (print_requested_list(flags)) return ExitCode::done;
   const ThreadLimit threads(flags.threads);
   Stopwatch watch;
   const RenderRequest request = check_render_flags(flags);
   NoticeLog log(flags.quiet);
+  Checkpointing checkpointing(flags, log);
   RenderReport report;
   report.command_line = command_line;
   report.threads = thread_count();
@@ -118,20 +138,10 @@ ExitCode run_render(const RenderFlags& flags, const std::string& command_line) {
   fill_in_size(report.options, view);
   check_picture_size(report.options, request.layers);
   const Camera camera(view, report.options.width, report.options.height);
+  RenderHooks hooks = checkpointing.hooks(request, report, view);
   if (flags.verbose) fmt::print(stderr, "{}", scene_lines(report));
 
-  const StopSignals signals;
-  ProgressReporter progress(request.progress, report.options);
-  std::optional<Profiler> profiler;
-  if (!flags.report.empty()) profiler.emplace();
-  const RenderResult result = render(scene, camera, *request.integrator, report.options, signals.stop(),
-                                     [&](const RenderProgress& state) { progress.update(state); });
-  if (profiler) {
-    profiler->stop();
-    report.profile = profiler->parts();
-    report.profile_samples = profiler->samples();
-  }
-  progress.finish();
+  const RenderResult result = trace(scene, camera, request, report, std::move(hooks));
   warn_of_bad_samples(result, flags, log);
 
   watch.lap();
@@ -142,11 +152,13 @@ ExitCode run_render(const RenderFlags& flags, const std::string& command_line) {
   report.output_seconds = watch.lap();
   auto stats = stats_json(report, flags, result, log);
   if (denoised) stats["denoised"] = denoised_json(*request.denoiser, denoised->error);
+  checkpointing.add_to(stats);
   if (!flags.stats.empty()) write_text_file(flags.stats, to_text(stats) + "\n");
   if (!flags.report.empty())
     write_text_file(flags.report, report_page(stats, result.film, denoised, request.display));
   if (!flags.quiet) fmt::print("{}\n", summary_line(report, flags, result));
   if (!flags.quiet && denoised) fmt::print("{}\n", denoised_text(*request.denoiser, denoised->error));
+  checkpointing.require_written();
   return result.reason == StopReason::interrupted ? ExitCode::stopped : ExitCode::done;
 }
 

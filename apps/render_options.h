@@ -46,6 +46,8 @@ struct RenderFlags {
   DisplayOptions display;
   std::string progress = "auto";
   std::string stats, report;
+  std::string checkpoint, resume;  ///< files; empty: none
+  std::string checkpoint_every = "5m";
   bool quiet = false, verbose = false;
 };
 

@@ -20,10 +20,6 @@ uint64_t total(const RayCounts& rays) { return rays.camera + rays.bounce + rays.
 
 double rate(uint64_t count, double seconds) { return seconds > 0 ? double(count) / seconds : 0; }
 
-double samples_per_pixel(const RenderResult& result) {
-  return double(result.samples) / (double(result.film.width()) * result.film.height());
-}
-
 std::string_view name(StopReason reason) {
   switch (reason) {
     case StopReason::samples:
@@ -36,10 +32,6 @@ std::string_view name(StopReason reason) {
       return "interrupted";
   }
   return "";
-}
-
-std::string crop_text(const Crop& crop) {
-  return fmt::format("{}x{}+{}+{}", crop.width, crop.height, crop.x, crop.y);
 }
 
 Json picture_json(const RenderReport& report, const RenderFlags& flags, const RenderResult& result) {
@@ -75,16 +67,6 @@ Json convergence_json(const RenderResult& result) {
   return rows;
 }
 
-/// "error 1.02 % (1.01 to 1.03 %)"; empty while it is not known.
-std::string error_text(const ErrorEstimate& error) {
-  if (!std::isfinite(error.rel_rmse)) return "";
-  std::string text = fmt::format(", error {:.3g} % ({:.3g} to {:.3g} %)", 100 * error.rel_rmse,
-                                 100 * error.low, 100 * error.high);
-  if (error.unreliable >= 0.001)
-    text += fmt::format(", {:.1f} % of pixels not to be trusted", 100 * error.unreliable);
-  return text;
-}
-
 Json rays_json(const RenderResult& result) {
   return {{"camera", result.rays.camera},
           {"bounce", result.rays.bounce},
@@ -110,9 +92,38 @@ Json bad_samples_json(const RenderResult& result) {
 
 }  // namespace
 
+double samples_per_pixel(const RenderResult& result) {
+  return double(result.samples) / (double(result.film.width()) * result.film.height());
+}
+
+std::string error_text(const ErrorEstimate& error) {
+  if (!std::isfinite(error.rel_rmse)) return "";
+  std::string text = fmt::format(", error {:.3g} % ({:.3g} to {:.3g} %)", 100 * error.rel_rmse,
+                                 100 * error.low, 100 * error.high);
+  if (error.unreliable >= 0.001)
+    text += fmt::format(", {:.1f} % of pixels not to be trusted", 100 * error.unreliable);
+  return text;
+}
+
+std::string crop_text(const Crop& crop) {
+  return fmt::format("{}x{}+{}+{}", crop.width, crop.height, crop.x, crop.y);
+}
+
+Metadata result_metadata(const RenderResult& result) {
+  Metadata metadata = {{"Software", "vernier " VERNIER_VERSION},
+                       {"vernier:samples", fmt::format("{}", result.samples)},
+                       {"vernier:samplesPerPixel", fmt::format("{}", samples_per_pixel(result))},
+                       {"vernier:seconds", fmt::format("{:.3f}", result.seconds)}};
+  if (std::isfinite(result.error.rel_rmse)) {
+    metadata["vernier:relRmse"] = fmt::format("{:.6g}", result.error.rel_rmse);
+    metadata["vernier:relRmse95"] = fmt::format("{:.6g} {:.6g}", result.error.low, result.error.high);
+    metadata["vernier:unreliablePixels"] = fmt::format("{:.6g}", result.error.unreliable);
+  }
+  return metadata;
+}
+
 Metadata image_metadata(const RenderReport& report, const RenderFlags& flags, const RenderResult& result) {
   Metadata metadata = {
-      {"Software", "vernier " VERNIER_VERSION},
       {"vernier:command", report.command_line},
       {"vernier:scene", report.scene_file},
       {"vernier:sceneHash", report.scene_hash},
@@ -120,17 +131,10 @@ Metadata image_metadata(const RenderReport& report, const RenderFlags& flags, co
       {"vernier:integrator", flags.integrator},
       {"vernier:accelerator", report.accelerator},
       {"vernier:seed", fmt::format("{}", flags.seed)},
-      {"vernier:samples", fmt::format("{}", result.samples)},
-      {"vernier:samplesPerPixel", fmt::format("{}", samples_per_pixel(result))},
-      {"vernier:seconds", fmt::format("{:.3f}", result.seconds)},
       {"vernier:stoppedBy", std::string(name(result.reason))},
       {"vernier:size", fmt::format("{}x{}", report.options.width, report.options.height)},
   };
-  if (std::isfinite(result.error.rel_rmse)) {
-    metadata["vernier:relRmse"] = fmt::format("{:.6g}", result.error.rel_rmse);
-    metadata["vernier:relRmse95"] = fmt::format("{:.6g} {:.6g}", result.error.low, result.error.high);
-    metadata["vernier:unreliablePixels"] = fmt::format("{:.6g}", result.error.unreliable);
-  }
+  metadata.merge(result_metadata(result));
   if (report.options.crop.width > 0) metadata["vernier:crop"] = crop_text(report.options.crop);
   return metadata;
 }

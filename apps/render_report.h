@@ -28,8 +28,20 @@ struct RenderReport {
   size_t profile_samples = 0;
 };
 
+/// "640x360+10+20", as --crop takes it.
+std::string crop_text(const Crop& crop);
+
 /// Image header entries that say how the picture came about.
 Metadata image_metadata(const RenderReport& report, const RenderFlags& flags, const RenderResult& result);
+
+/// Those of them that say what was sampled, and how wrong it is.
+Metadata result_metadata(const RenderResult& result);
+
+/// ", error 1.02 % (1.01 to 1.03 %)"; empty while it is not known.
+std::string error_text(const ErrorEstimate& error);
+
+/// Samples a pixel, on average.
+double samples_per_pixel(const RenderResult& result);
 
 /// The content of the --stats file; docs/stats.md documents every field.
 nlohmann::ordered_json stats_json(const RenderReport& report, const RenderFlags& flags,

@@ -1,8 +1,11 @@
 #include "integrators/layers.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
+#include "core/base/error.h"
 #include "core/base/names.h"
 #include "core/base/parallel.h"
 #include "core/image/error_estimate.h"
@@ -78,6 +81,41 @@ bool any_needs(std::span<const Layer> chosen, LayerNeed need) {
   return std::any_of(chosen.begin(), chosen.end(), [need](const Layer& l) { return l.need == need; });
 }
 
+/// `first_hits` may be null when no layer needs them.
+LayeredImage assemble(const Film& film, std::span<const Layer> chosen, const FirstHits* first_hits) {
+  LayeredImage picture;
+  picture.linear = true;
+  picture.channel_names = {"R", "G", "B"};
+  for (const Layer& layer : chosen)
+    for (int c = 0; c < layer.channel_count(); ++c)
+      picture.channel_names.emplace_back(layer.channels[size_t(c)]);
+  picture.image = Image(film.width(), film.height(), int(picture.channel_names.size()));
+
+  const ErrorLayers error = any_needs(chosen, LayerNeed::error) ? error_layers(film) : ErrorLayers{};
+  const bool needs_mean = any_needs(chosen, LayerNeed::mean_hit);
+  const bool needs_center = any_needs(chosen, LayerNeed::center_hit);
+  parallel_for(size_t(film.height()), [&](size_t row) {
+    const int y = int(row);
+    for (int x = 0; x < film.width(); ++x) {
+      PixelFacts pixel{film, x, y};
+      if (!error.standard_error.empty()) {
+        pixel.error = rgb_at(error.standard_error, x, y);
+        pixel.unreliable = *error.unreliable.pixel(x, y) > 0;
+      }
+      if (needs_mean) pixel.mean_hit = first_hits->mean(x, y);
+      if (needs_center) pixel.center_hit = first_hits->at_center(x, y);
+      float* out = picture.image.pixel(x, y);
+      put(film.pixel(x, y), out);
+      out += 3;
+      for (const Layer& layer : chosen) {
+        layer.write(pixel, out);
+        out += layer.channel_count();
+      }
+    }
+  });
+  return picture;
+}
+
 }  // namespace
 
 std::span<const Layer> layers() { return table; }
@@ -100,38 +138,24 @@ std::vector<Layer> find_layers(const std::string& list) {
 
 LayeredImage with_layers(const Film& film, std::span<const Layer> chosen, const Scene& scene,
                          const Camera& camera, const RenderOptions& options) {
-  LayeredImage picture;
-  picture.linear = true;
-  picture.channel_names = {"R", "G", "B"};
-  for (const Layer& layer : chosen)
-    for (int c = 0; c < layer.channel_count(); ++c)
-      picture.channel_names.emplace_back(layer.channels[size_t(c)]);
-  picture.image = Image(film.width(), film.height(), int(picture.channel_names.size()));
-
-  const ErrorLayers error = any_needs(chosen, LayerNeed::error) ? error_layers(film) : ErrorLayers{};
-  const bool needs_mean = any_needs(chosen, LayerNeed::mean_hit);
-  const bool needs_center = any_needs(chosen, LayerNeed::center_hit);
   const FirstHits first_hits(scene, camera, options, film);
-  parallel_for(size_t(film.height()), [&](size_t row) {
-    const int y = int(row);
-    for (int x = 0; x < film.width(); ++x) {
-      PixelFacts pixel{film, x, y};
-      if (!error.standard_error.empty()) {
-        pixel.error = rgb_at(error.standard_error, x, y);
-        pixel.unreliable = *error.unreliable.pixel(x, y) > 0;
-      }
-      if (needs_mean) pixel.mean_hit = first_hits.mean(x, y);
-      if (needs_center) pixel.center_hit = first_hits.at_center(x, y);
-      float* out = picture.image.pixel(x, y);
-      put(film.pixel(x, y), out);
-      out += 3;
-      for (const Layer& layer : chosen) {
-        layer.write(pixel, out);
-        out += layer.channel_count();
-      }
-    }
-  });
-  return picture;
+  return assemble(film, chosen, &first_hits);
+}
+
+std::vector<Layer> find_film_layers(const std::string& list) {
+  std::vector<Layer> found = find_layers(list);
+  for (const Layer& layer : found)
+    if (layer.need == LayerNeed::mean_hit || layer.need == LayerNeed::center_hit)
+      throw Error(
+          ErrorKind::usage, {}, "--aov",
+          fmt::format("{} is looked up in the scene, which is not there; only error, samples, variance "
+                      "and half come from the samples alone",
+                      layer.name));
+  return found;
+}
+
+LayeredImage with_film_layers(const Film& film, std::span<const Layer> chosen) {
+  return assemble(film, chosen, nullptr);
 }
 
 }  // namespace vernier

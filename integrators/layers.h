@@ -52,4 +52,10 @@ std::vector<Layer> find_layers(const std::string& list);
 LayeredImage with_layers(const Film& film, std::span<const Layer> chosen, const Scene& scene,
                          const Camera& camera, const RenderOptions& options);
 
+/// As find_layers, but throws Error(usage) when a layer needs the scene.
+std::vector<Layer> find_film_layers(const std::string& list);
+
+/// As with_layers, without a scene, for layers that find_film_layers gave.
+LayeredImage with_film_layers(const Film& film, std::span<const Layer> chosen);
+
 }  // namespace vernier

@@ -3,55 +3,48 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <mutex>
 
 #include "integrators/camera_sample.h"
-#include "integrators/sample_plan.h"
+#include "integrators/render_state.h"
 #include "scene/scene.h"
 
 namespace vernier {
 namespace {
 
-constexpr int tile_size = 16;
+constexpr int tile_size = RenderState::tile_size;
 constexpr uint32_t pilot = 16;  // samples a pixel before any decision is taken
 constexpr size_t kept_bad_samples = 8;
 constexpr double report_interval = 0.2;  // seconds
 
-/// One render call's state. Tiles write disjoint pixels of the film; totals are merged once a tile.
+/// One render call. Tiles write disjoint pixels of the film; totals are merged once a tile.
 class Renderer {
  public:
   Renderer(const Scene& scene, const Camera& camera, const Integrator& integrator,
-           const RenderOptions& options, const std::atomic<bool>& stop,
-           const std::function<void(const RenderProgress&)>& observe)
+           const RenderOptions& options, const std::atomic<bool>& stop, RenderHooks hooks)
       : scene_(scene),
         camera_(camera),
         integrator_(integrator),
         options_(options),
         crop_(options.crop.width > 0 ? options.crop : Crop{0, 0, options.width, options.height}),
         stop_(stop),
-        observe_(observe),
-        guides_{SampleGuide(options.adaptive ? crop_.width : 0, crop_.height),
-                SampleGuide(options.adaptive ? crop_.width : 0, crop_.height)},
-        result_(Film(crop_.width, crop_.height)) {}
+        hooks_(std::move(hooks)),
+        state_(hooks_.from ? std::move(*hooks_.from)
+                           : RenderState(crop_.width, crop_.height, options.adaptive)),
+        seconds_before_(state_.so_far.seconds) {}
 
   RenderResult run() {
-    uint32_t done = 0;
+    next_save_ = seconds() + hooks_.save_interval;
+    if (state_.so_far.samples > 0) look();
     while (!reason_) {
-      const uint32_t count = next_pass(done);
-      const bool may_adapt = options_.adaptive && done >= pilot;
-      const SamplePlan plan = may_adapt ? SamplePlan::adaptive(result_.film, guides_, count)
-                                        : SamplePlan::uniform(result_.film, count);
-      render_pass(plan, done == 0);
-      done += count;
-      look(done);
+      if (state_.pass.size() == 0) plan_pass();
+      render_pass();
+      if (is_pass_complete()) end_pass();
+      look();
     }
-    result_.reason = *reason_;
-    result_.error = estimate_error(result_.film);
-    result_.seconds = seconds();
-    std::sort(result_.bad_sample_examples.begin(), result_.bad_sample_examples.end());
-    return std::move(result_);
+    if (hooks_.save) save();
+    return finish();
   }
 
  private:
@@ -62,56 +55,126 @@ class Renderer {
     std::vector<BadSample> bad;
   };
 
+  RenderResult& result() { return state_.so_far; }
+  const RenderResult& result() const { return state_.so_far; }
   /// Samples drawn so far: their index goes on even where the film rejects one.
   uint32_t& taken(int x, int y, int half) {
-    return taken_[(size_t(y) * crop_.width + x) * Film::halves + size_t(half)];
+    return state_.taken[(size_t(y) * crop_.width + x) * Film::halves + size_t(half)];
   }
-  double samples_per_pixel() const { return double(result_.samples) / (double(crop_.width) * crop_.height); }
+  double samples_per_pixel() const { return double(result().samples) / (double(crop_.width) * crop_.height); }
   double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    return seconds_before_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
   bool out_of_time() const { return seconds() >= options_.time_limit; }
 
   /// Passes double at first, so that a picture comes soon and stratified sets of samples are completed; later
   /// ones are short enough to look often at clock and target, long enough that planning them costs nothing.
-  uint32_t next_pass(uint32_t done) const {
-    const uint32_t count = std::clamp(done, 2u, std::max(pilot, done / 4));
-    return options_.spp > 0 ? std::min(count, uint32_t(options_.spp) - done) : count;
+  /// They are planned without regard to --spp, which may end the render in the midst of one.
+  void plan_pass() {
+    const uint32_t size = std::clamp(state_.done, 2u, std::max(pilot, state_.done / 4));
+    const bool may_adapt = options_.adaptive && state_.done >= pilot;
+    state_.pass = may_adapt ? SamplePlan::adaptive(result().film, state_.guides, size)
+                            : SamplePlan::uniform(result().film, size);
+    state_.parts.assign(size_t(state_.tile_count()), 0);
   }
 
-  /// Between passes: is it enough?
-  void look(uint32_t done) {
-    if (stop_) {
-      reason_ = StopReason::interrupted;
-    } else if (options_.spp > 0 && done >= uint32_t(options_.spp)) {
+  /// How much of the pass is wanted, in samples a pixel.
+  uint32_t wanted_part() const {
+    if (options_.spp <= 0) return state_.pass.size();
+    return std::min(state_.pass.size(), uint32_t(std::max(0, options_.spp - int(state_.done))));
+  }
+  bool is_pass_complete() const {
+    return std::all_of(state_.parts.begin(), state_.parts.end(),
+                       [this](uint32_t part) { return part == state_.pass.size(); });
+  }
+  void end_pass() {
+    state_.done += state_.pass.size();
+    state_.pass = {};
+    state_.parts.clear();
+  }
+  bool has_all_samples() const {
+    if (options_.spp <= 0) return false;
+    return std::all_of(state_.parts.begin(), state_.parts.end(),
+                       [wanted = wanted_part()](uint32_t part) { return part >= wanted; }) &&
+           state_.done + wanted_part() >= uint32_t(options_.spp);
+  }
+
+  /// Is it enough? The error counts between passes only, for a render that was cut must not end elsewhere.
+  void look() {
+    if (has_all_samples()) {
       reason_ = StopReason::samples;
+    } else if (stop_) {
+      reason_ = StopReason::interrupted;
     } else if (out_of_time()) {
       reason_ = StopReason::time;
     }
-    // The estimate costs as much as a few samples; looking when samples have grown by a half is often enough.
-    if (done < pilot || (double(done) < next_look_ && !reason_)) return;
-    next_look_ = done * (options_.target_error > 0 ? 1.1 : 1.5);
-    error_ = estimate_error(result_.film);
-    result_.convergence.push_back({seconds(), samples_per_pixel(), *error_});
-    if (!reason_ && options_.target_error > 0 && error_->rel_rmse <= options_.target_error)
+    const bool has_target = options_.target_error > 0;
+    // The estimate costs as much as a few samples; without a target, looking when samples have grown by a
+    // half is often enough.
+    const bool due = has_target || 2 * state_.done >= 3 * state_.looked_at;
+    if (state_.pass.size() == 0 && state_.done >= pilot && state_.done > state_.looked_at && due) {
+      state_.looked_at = state_.done;
+      result().convergence.push_back({seconds(), samples_per_pixel(), estimate_error(result().film)});
+    }
+    if (!reason_ && has_target && !result().convergence.empty() &&
+        result().convergence.back().error.rel_rmse <= options_.target_error)
       reason_ = StopReason::error;
   }
 
-  void render_pass(const SamplePlan& plan, bool first) {
-    const int columns = (crop_.width + tile_size - 1) / tile_size;
-    const int rows = (crop_.height + tile_size - 1) / tile_size;
-    tbb::parallel_for(0, columns * rows, [&](int tile) {
-      // The first pass always completes unless interrupted, so that every pixel has a sample.
-      if (stop_ || (!first && out_of_time())) return;
-      Totals totals;
-      const int x0 = tile % columns * tile_size, y0 = tile / columns * tile_size;
-      for (int y = y0; y < std::min(y0 + tile_size, crop_.height); ++y)
-        for (int x = x0; x < std::min(x0 + tile_size, crop_.width); ++x)
-          for (int half = 0; half < Film::halves; ++half)
-            for (uint32_t i = 0; i < plan.count(x, y, half); ++i)
-              render_sample(x, y, half, options_.adaptive && i < plan.even_count(half), totals);
-      merge(totals);
-    });
+  RenderResult finish() {
+    result().reason = *reason_;
+    const auto& looks = result().convergence;
+    const bool looked = !looks.empty() && looks.back().samples_per_pixel == samples_per_pixel();
+    result().error = looked ? looks.back().error : estimate_error(result().film);
+    if (!looked && state_.done >= pilot)
+      result().convergence.push_back({seconds(), samples_per_pixel(), result().error});
+    result().seconds = seconds();
+    return std::move(result());
+  }
+
+  /// As far as limits allow.
+  void render_pass() {
+    const uint32_t wanted = wanted_part();
+    do {
+      if (is_save_due()) save();
+      tbb::parallel_for(0, state_.tile_count(), [&](int tile) {
+        // Every pixel gets its first samples unless interrupted.
+        if (stop_ || (state_.done > 0 && out_of_time()) || is_save_due()) return;
+        uint32_t& part = state_.parts[size_t(tile)];
+        if (part < wanted) render_tile(tile, part, wanted);
+        part = std::max(part, wanted);
+      });
+    } while (is_save_due() && !stop_);
+  }
+
+  /// From `part` of the pass to `wanted`.
+  void render_tile(int tile, uint32_t part, uint32_t wanted) {
+    Totals totals;
+    const int columns = state_.tile_columns();
+    const int x0 = tile % columns * tile_size, y0 = tile / columns * tile_size;
+    for (int y = y0; y < std::min(y0 + tile_size, crop_.height); ++y)
+      for (int x = x0; x < std::min(x0 + tile_size, crop_.width); ++x)
+        for (int half = 0; half < Film::halves; ++half) {
+          const uint32_t end = state_.pass.count(x, y, half, wanted);
+          for (uint32_t i = state_.pass.count(x, y, half, part); i < end; ++i)
+            render_sample(x, y, half, options_.adaptive && i < state_.pass.even_count(half), totals);
+        }
+    merge(totals);
+  }
+
+  /// Not before something has been done since the last one.
+  bool is_save_due() const { return unsaved_ && hooks_.save && seconds() >= next_save_; }
+
+  /// The clock stands still meanwhile.
+  void save() {
+    const double start = seconds();
+    result().seconds = start;
+    std::sort(result().bad_sample_examples.begin(), result().bad_sample_examples.end());
+    hooks_.save(state_);
+    unsaved_ = false;
+    const double duration = seconds() - start;
+    saving_ += duration;
+    next_save_ = start + std::max(hooks_.save_interval, 20 * duration);
   }
 
   void render_sample(int x, int y, int half, bool guides, Totals& totals) {
@@ -121,37 +184,38 @@ class Renderer {
     const Estimate estimate = integrator_.estimate(scene_, sample.ray, sample.sampler);
     ++totals.samples;
     totals.rays += estimate.rays;
-    if (!result_.film.add(x, y, half, estimate.radiance))
+    if (!result().film.add(x, y, half, estimate.radiance))
       totals.bad.push_back({full_x, full_y, half, index});
     else if (guides)
-      guides_[size_t(half)].add(x, y, estimate.radiance);
+      state_.guides[size_t(half)].add(x, y, estimate.radiance);
   }
 
   void merge(const Totals& totals) {
     const std::lock_guard lock(mutex_);
-    result_.samples += totals.samples;
-    result_.rays += totals.rays;
-    result_.bad_samples += totals.bad.size();
+    unsaved_ = true;
+    result().samples += totals.samples;
+    result().rays += totals.rays;
+    result().bad_samples += totals.bad.size();
     for (const auto& bad : totals.bad)
-      if (result_.bad_sample_examples.size() < kept_bad_samples) result_.bad_sample_examples.push_back(bad);
-    if (observe_ && seconds() - reported_ >= report_interval) {
+      if (result().bad_sample_examples.size() < kept_bad_samples) result().bad_sample_examples.push_back(bad);
+    if (hooks_.observe && seconds() - reported_ >= report_interval) {
       reported_ = seconds();
-      observe_(progress());
+      hooks_.observe(progress());
     }
   }
 
   RenderProgress progress() const {
     RenderProgress p;
     p.seconds = seconds();
-    p.samples = result_.samples;
+    p.samples = result().samples;
     p.samples_per_pixel = samples_per_pixel();
-    p.rays = result_.rays;
-    p.error = error_;
+    p.rays = result().rays;
+    if (!result().convergence.empty()) p.error = result().convergence.back().error;
     p.fraction = p.seconds / options_.time_limit;
     if (options_.spp > 0) p.fraction = std::max(p.fraction, p.samples_per_pixel / options_.spp);
-    if (options_.target_error > 0 && !result_.convergence.empty()) {
+    if (options_.target_error > 0 && !result().convergence.empty()) {
       // Squared error falls as one over the samples.
-      const auto& last = result_.convergence.back();
+      const auto& last = result().convergence.back();
       const double needed = last.samples_per_pixel * square(last.error.rel_rmse / options_.target_error);
       p.fraction = std::max(p.fraction, p.samples_per_pixel / needed);
     }
@@ -165,24 +229,23 @@ class Renderer {
   const RenderOptions& options_;
   const Crop crop_;
   const std::atomic<bool>& stop_;
-  const std::function<void(const RenderProgress&)>& observe_;
+  const RenderHooks hooks_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  RenderState state_;
+  const double seconds_before_;  ///< of rendering, by those who did what state_ began with
   double reported_ = 0;
-  double next_look_ = 0;
+  double next_save_ = 0;
+  double saving_ = 0;  ///< seconds
+  std::atomic<bool> unsaved_ = false;
   std::optional<StopReason> reason_;
-  std::optional<ErrorEstimate> error_;
-  std::vector<uint32_t> taken_ = std::vector<uint32_t>(size_t(crop_.width) * crop_.height * Film::halves);
   std::mutex mutex_;
-  std::array<SampleGuide, Film::halves> guides_;
-  RenderResult result_;
 };
 
 }  // namespace
 
 RenderResult render(const Scene& scene, const Camera& camera, const Integrator& integrator,
-                    const RenderOptions& options, const std::atomic<bool>& stop,
-                    const std::function<void(const RenderProgress&)>& observe) {
-  return Renderer(scene, camera, integrator, options, stop, observe).run();
+                    const RenderOptions& options, const std::atomic<bool>& stop, RenderHooks hooks) {
+  return Renderer(scene, camera, integrator, options, stop, std::move(hooks)).run();
 }
 
 }  // namespace vernier

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace vernier {
 
 class Camera;
 class Scene;
+struct RenderState;
 
 /// Pixels [x, x + width) x [y, y + height) of the full picture.
 struct Crop {
@@ -38,7 +40,7 @@ struct RenderProgress {
   double samples_per_pixel = 0;
   uint64_t samples = 0;  ///< camera samples in total
   RayCounts rays;
-  std::optional<ErrorEstimate> error;  ///< as of the last pass that looked
+  std::optional<ErrorEstimate> error;  ///< as of the last pass after which it was looked at
 };
 
 /// A sample that was not finite or was negative, so that it can be replayed. x, y are in the full picture.
@@ -58,12 +60,12 @@ struct RenderResult {
   Film film;  ///< of the crop's size
   StopReason reason = StopReason::samples;
   ErrorEstimate error;
-  /// Error after each pass that looked, in order: how this render converged.
-  struct Checkpoint {
+  /// Error after passes, in order, and at the end: how this render converged.
+  struct Look {
     double seconds, samples_per_pixel;
     ErrorEstimate error;
   };
-  std::vector<Checkpoint> convergence;
+  std::vector<Look> convergence;
   double seconds = 0;
   uint64_t samples = 0;
   RayCounts rays;
@@ -71,11 +73,23 @@ struct RenderResult {
   std::vector<BadSample> bad_sample_examples;  ///< at most a few
 };
 
-/// Renders tiles of the picture in passes on all threads. The same bytes for any number of threads. `stop`
-/// may become true at any time (from a signal handler): rendering then ends within about a tile, with what is
-/// there.
+/// Who is told of a render on its way, and where it starts.
+struct RenderHooks {
+  std::function<void(const RenderProgress&)> observe = {};
+  /// Gets the state after each `save_interval` seconds of rendering, or twenty times as long as the last save
+  /// took, and once at the end. Called on the thread that called render() while nothing is rendered; its time
+  /// counts nowhere.
+  std::function<void(const RenderState&)> save = {};
+  double save_interval = std::numeric_limits<double>::infinity();
+  /// A state (integrators/render_state.h) to go on from, of a render with the same options but for its
+  /// limits; null: from the beginning. It is emptied. The limits, and all figures, are of the whole render.
+  std::shared_ptr<RenderState> from = nullptr;
+};
+
+/// Renders tiles of the picture in passes on all threads. The same bytes for any number of threads, and
+/// wherever a render with the same limits was cut and gone on with. `stop` may become true at any time (from
+/// a signal handler): rendering then ends within about a tile, with what is there.
 RenderResult render(const Scene& scene, const Camera& camera, const Integrator& integrator,
-                    const RenderOptions& options, const std::atomic<bool>& stop,
-                    const std::function<void(const RenderProgress&)>& observe = {});
+                    const RenderOptions& options, const std::atomic<bool>& stop, RenderHooks hooks = {});
 
 }  // namespace vernier

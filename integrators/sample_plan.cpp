@@ -33,25 +33,26 @@ std::vector<float> SampleGuide::needs() const {
   return smooth;
 }
 
-SamplePlan SamplePlan::uniform(const Film& film, uint32_t count) {
-  SamplePlan plan;
-  plan.width_ = film.width();
+SamplePlan SamplePlan::uniform(const Film& film, uint32_t size) {
+  Numbers plan;
+  plan.width = film.width();
+  plan.size = size;
   // An odd sample goes to the half that has fewer.
-  const bool second_lags = film.samples(0, 0, 1) < film.samples(0, 0, 0);
-  plan.even_[0] = count / 2 + (count % 2 && !second_lags);
-  plan.even_[1] = count - plan.even_[0];
-  return plan;
+  plan.odd_half = film.samples(0, 0, 1) < film.samples(0, 0, 0) ? 1 : 0;
+  return SamplePlan(std::move(plan));
 }
 
 SamplePlan SamplePlan::adaptive(const Film& film, std::span<const SampleGuide, Film::halves> guides,
-                                uint32_t count) {
-  SamplePlan plan;
-  plan.width_ = film.width();
+                                uint32_t size) {
+  Numbers plan;
+  plan.width = film.width();
+  plan.size = size;
   const size_t pixels = size_t(film.width()) * film.height();
-  plan.counts_.resize(pixels * Film::halves);
-  const double per_half = count / 2.0;
+  plan.counts.resize(pixels * Film::halves);
+  const double per_half = size / 2.0;
   // At most eight times the even share, so that a plan made on little evidence does not spend everything.
   const double fewest = std::floor(per_half / 4), most = per_half * 8;
+  plan.fewest = uint32_t(fewest);
   for (int half = 0; half < Film::halves; ++half) {
     const std::vector<float> needs = guides[size_t(1 - half)].needs();
     double need_sum = 0, done_sum = 0;
@@ -59,7 +60,7 @@ SamplePlan SamplePlan::adaptive(const Film& film, std::span<const SampleGuide, F
       need_sum += needs[i];
       done_sum += film.samples(int(i % film.width()), int(i / film.width()), half);
     }
-    if (!(need_sum > 0)) return uniform(film, count);
+    if (!(need_sum > 0)) return uniform(film, size);
     const double budget = per_half * double(pixels);
     // The best total of a pixel is in proportion to its need (Neyman allocation). Where that has been passed
     // already, or the bounds bite, the budget goes elsewhere: a few rounds find the factor that spends it.
@@ -80,11 +81,10 @@ SamplePlan SamplePlan::adaptive(const Film& film, std::span<const SampleGuide, F
       carried += wanted(i) - fewest;
       const double whole = std::floor(carried);
       carried -= whole;
-      plan.counts_[i * Film::halves + size_t(half)] = uint16_t(std::min(fewest + whole, 65535.0));
+      plan.counts[i * Film::halves + size_t(half)] = uint16_t(std::min(fewest + whole, 65535.0));
     }
-    plan.even_[half] = uint32_t(fewest);
   }
-  return plan;
+  return SamplePlan(std::move(plan));
 }
 
 }  // namespace vernier

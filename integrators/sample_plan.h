@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -27,6 +29,10 @@ class SampleGuide {
   /// too noisy to act on and a neighbour's surprise is a warning.
   std::vector<float> needs() const;
 
+  /// All that is known, to be stored and read back on the same kind of machine.
+  std::span<const std::byte> bytes() const { return std::as_bytes(std::span(cells_)); }
+  std::span<std::byte> bytes() { return std::as_writable_bytes(std::span(cells_)); }
+
  private:
   struct Cell {
     Rgb sum{0, 0, 0};
@@ -39,29 +45,56 @@ class SampleGuide {
   std::vector<Cell> cells_;
 };
 
-/// How many samples each pixel and half gets in the next pass.
+/// How many samples each pixel and half gets in a pass. A pass need not be completed at once: any first part
+/// of it is a plan too, spread over the picture like the whole.
 class SamplePlan {
  public:
-  /// `count` more samples for every pixel, the halves alike.
-  static SamplePlan uniform(const Film& film, uint32_t count);
+  struct Numbers {
+    int width = 0;
+    uint32_t size = 0;
+    int odd_half = 0;              ///< which half gets the odd sample where all pixels get the same
+    uint32_t fewest = 0;           ///< where they do not: what every pixel and half gets at least
+    std::vector<uint16_t> counts;  ///< of each pixel and half; empty: all get the same
+  };
 
-  /// On average `count` more samples a pixel, more where they lower the image's relative error most; a
+  /// Of a pass of no samples.
+  SamplePlan() = default;
+  /// From what numbers() gave.
+  explicit SamplePlan(Numbers numbers) : numbers_(std::move(numbers)) {}
+  const Numbers& numbers() const { return numbers_; }
+
+  /// `size` more samples for every pixel, the halves alike.
+  static SamplePlan uniform(const Film& film, uint32_t size);
+
+  /// On average `size` more samples a pixel, more where they lower the image's relative error most; a
   /// quarter of them is spread evenly, for the guides. The number for one half depends on the other half's
   /// guide only, so that neither half's mean is biased by its own luck (Kirk and Arvo 1991, "Unbiased
   /// Sampling Techniques for Image Synthesis").
   static SamplePlan adaptive(const Film& film, std::span<const SampleGuide, Film::halves> guides,
-                             uint32_t count);
+                             uint32_t size);
 
-  uint32_t count(int x, int y, int half) const {
-    return counts_.empty() ? even_[half] : counts_[(size_t(y) * width_ + x) * Film::halves + half];
+  /// Samples a pixel on average; 0: nothing is planned.
+  uint32_t size() const { return numbers_.size; }
+
+  /// How many samples are done when `part` a pixel, at most size(), are. Grows with `part`; at size() it is
+  /// the whole plan.
+  uint32_t count(int x, int y, int half, uint32_t part) const {
+    if (numbers_.counts.empty()) return share(part, half);
+    const size_t i = (size_t(y) * numbers_.width + x) * Film::halves + size_t(half);
+    // Rounded up or down so that the total is met: by multiples of the golden ratio, whose fractions fill
+    // the unit interval evenly.
+    const double offset = double(uint32_t(i) * 2654435769u) * 0x1p-32;
+    return uint32_t(double(numbers_.counts[i]) * part / numbers_.size + offset);
   }
-  /// How many of count() every pixel gets: those that may go into a guide.
-  uint32_t even_count(int half) const { return even_[half]; }
+  /// How many samples of the whole plan every pixel gets: those that may go into a guide.
+  uint32_t even_count(int half) const {
+    return numbers_.counts.empty() ? share(numbers_.size, half) : numbers_.fewest;
+  }
 
  private:
-  int width_ = 0;
-  uint32_t even_[Film::halves] = {0, 0};
-  std::vector<uint16_t> counts_;  ///< empty: even_ everywhere
+  uint32_t share(uint32_t samples, int half) const { return (samples + (half == numbers_.odd_half)) / 2; }
+
+  Numbers numbers_;
 };
 
 }  // namespace vernier

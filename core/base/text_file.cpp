@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -24,19 +25,34 @@ struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-}  // namespace
-
-void write_text_file(const std::string& path, std::string_view text) {
+void write_and_rename(const std::string& path, std::span<const std::span<const std::byte>> parts,
+                      bool to_disk) {
   const std::string temporary = beside(path);
   std::unique_ptr<std::FILE, CloseFile> file(std::fopen(temporary.c_str(), "wb"));
   if (!file) refuse(path, std::strerror(errno));
-  const bool written = std::fwrite(text.data(), 1, text.size(), file.get()) == text.size();
+  bool written = true;
+  for (const auto& part : parts)
+    written = written && std::fwrite(part.data(), 1, part.size(), file.get()) == part.size();
+  if (to_disk) written = written && std::fflush(file.get()) == 0 && ::fdatasync(::fileno(file.get())) == 0;
+  int reason = errno;
   const bool closed = std::fclose(file.release()) == 0;
+  if (written) reason = errno;
   if (!written || !closed || std::rename(temporary.c_str(), path.c_str()) != 0) {
-    const std::string reason = std::strerror(errno);
+    if (written && closed) reason = errno;
     std::remove(temporary.c_str());
-    refuse(path, reason);
+    refuse(path, std::strerror(reason));
   }
+}
+
+}  // namespace
+
+void write_text_file(const std::string& path, std::string_view text) {
+  const std::array parts{std::as_bytes(std::span(text))};
+  write_and_rename(path, parts, false);
+}
+
+void write_file_safely(const std::string& path, std::span<const std::span<const std::byte>> parts) {
+  write_and_rename(path, parts, true);
 }
 
 void check_writable_text_file(const std::string& path) {

@@ -2,6 +2,17 @@
 
 namespace vernier {
 
+void Film::merge(const Film& other) {
+  for (size_t i = 0; i < cells_.size(); ++i) {
+    Cell& cell = cells_[i];
+    const Cell& more = other.cells_[i];
+    cell.sum += more.sum;
+    cell.sum_of_squares += more.sum_of_squares;
+    cell.count += more.count;
+    cell.largest = std::max(cell.largest, more.largest);
+  }
+}
+
 Vec3d Film::half_mean(int x, int y, int half) const {
   const Cell& cell = cells_[index(x, y, half)];
   return cell.count ? cell.sum / double(cell.count) : Vec3d(0, 0, 0);

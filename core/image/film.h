@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/image/image.h"
@@ -28,6 +30,10 @@ class Film {
     return true;
   }
 
+  /// Adds the samples of another film of the same size, each half to its own. The halves stay independent
+  /// when the other film's samples are independent of these.
+  void merge(const Film& other);
+
   int width() const { return width_; }
   int height() const { return height_; }
 
@@ -51,6 +57,11 @@ class Film {
 
   /// All pixels: three channels, linear Rec.709; zero where there are no samples.
   Image image() const;
+
+  /// All that is known, to be stored and read back by the same version of the program on the same kind of
+  /// machine.
+  std::span<const std::byte> bytes() const { return std::as_bytes(std::span(cells_)); }
+  std::span<std::byte> bytes() { return std::as_writable_bytes(std::span(cells_)); }
 
  private:
   struct Cell {

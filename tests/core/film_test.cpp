@@ -99,6 +99,26 @@ TEST(Film, ShareOfTheLargestSample) {
   EXPECT_DOUBLE_EQ(film.largest_share(0, 0), 9.0 / 12);
 }
 
+TEST(Film, MergedIsAsIfAddedToOne) {
+  Film a(2, 1), b(2, 1), both(2, 1);
+  for (int i = 0; i < 20; ++i) {
+    const Rgb value(float(i % 7), float(i * i), 1);
+    const int x = i % 2, half = i / 2 % 2;
+    EXPECT_TRUE((i % 3 ? a : b).add(x, 0, half, value));
+    EXPECT_TRUE(both.add(x, 0, half, value));
+  }
+  a.merge(b);
+  for (int x = 0; x < 2; ++x) {
+    EXPECT_EQ(a.pixel(x, 0), both.pixel(x, 0));
+    EXPECT_EQ(a.sample_variance(x, 0), both.sample_variance(x, 0));
+    EXPECT_EQ(a.largest_share(x, 0), both.largest_share(x, 0));
+    for (int half = 0; half < Film::halves; ++half) {
+      EXPECT_EQ(a.samples(x, 0, half), both.samples(x, 0, half));
+      EXPECT_EQ(a.half_mean(x, 0, half), both.half_mean(x, 0, half));
+    }
+  }
+}
+
 TEST(Film, SumsInDouble) {
   Film film(1, 1);
   EXPECT_TRUE(film.add(0, 0, 0, {1e8f, 1e8f, 1e8f}));

@@ -1,0 +1,252 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "integrators/checkpoint.h"
+#include "scene/camera.h"
+#include "tests/support/process.h"
+#include "tests/support/test_scenes.h"
+
+namespace vernier::test {
+namespace {
+
+using testing::HasSubstr;
+
+Scene room() {
+  return SceneBuilder()
+      .add(box({-1, 0, -1}, {1, 2, 1}, true), plastic(0.4f))
+      .add(parallelogram({-0.3f, 1.9f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}), emitter(5))
+      .build();
+}
+
+/// Renders a room of 3 x 2 tiles; each test says how far.
+class Resume : public testing::Test {
+ protected:
+  Resume() {
+    options_.width = 36;
+    options_.height = 20;
+    CameraDescription view;
+    view.yfov = 1.2f;
+    view.to_world.origin = {0, 1, 0.95f};
+    camera_.emplace(view, options_.width, options_.height);
+  }
+
+  RenderResult run(RenderHooks hooks = {}) {
+    stop_ = false;
+    return render(scene_, *camera_, *integrator_, options_, stop_, std::move(hooks));
+  }
+  RenderResult go_on(const RenderState& state) {
+    RenderHooks hooks;
+    hooks.from = std::make_shared<RenderState>(state);
+    return run(std::move(hooks));
+  }
+  /// The state at the end of a render.
+  RenderState last_state() {
+    std::optional<RenderState> last;
+    RenderHooks hooks;
+    hooks.save = [&](const RenderState& state) { last = state; };
+    run(std::move(hooks));
+    return *last;
+  }
+
+  const Scene scene_ = room();
+  const std::unique_ptr<Integrator> integrator_ = path({.max_depth = 3});
+  RenderOptions options_;
+  std::optional<Camera> camera_;
+  std::atomic<bool> stop_ = false;
+};
+
+void expect_same(const RenderResult& a, const RenderResult& b, const std::string& where) {
+  EXPECT_EQ(a.film.image().values, b.film.image().values) << where;
+  EXPECT_EQ(a.samples, b.samples) << where;
+  EXPECT_EQ(a.rays.shadow, b.rays.shadow) << where;
+  EXPECT_EQ(a.error.rel_rmse, b.error.rel_rmse) << where;
+  EXPECT_EQ(a.reason, b.reason) << where;
+  for (int y = 0; y < a.film.height(); ++y)
+    for (int x = 0; x < a.film.width(); ++x)
+      for (int half = 0; half < Film::halves; ++half)
+        ASSERT_EQ(a.film.samples(x, y, half), b.film.samples(x, y, half)) << where;
+}
+
+// Wherever it was cut, between passes and within them, the picture is the one that was never cut.
+TEST_F(Resume, SameFromAnyTile) {
+  options_.spp = 40;  // within the pass from 32 to 48
+  for (const bool adaptive : {true, false}) {
+    options_.adaptive = adaptive;
+    const ThreadLimit limit(1);
+    std::vector<RenderState> states;
+    RenderHooks hooks;
+    hooks.save_interval = 0;
+    hooks.save = [&](const RenderState& state) { states.push_back(state); };
+    const RenderResult whole = run(std::move(hooks));
+    expect_same(run(), whole, "not saved");
+    // Seven passes of six tiles; on a slow disk of the test machine, saving would be rarer.
+    ASSERT_GT(states.size(), 10u);
+    size_t within = 0;
+    for (size_t i = 0; i < states.size(); ++i) {
+      within += states[i].pass.size() > 0;
+      const ThreadLimit other(1 + i % 2);
+      expect_same(go_on(states[i]), whole, "state " + std::to_string(i) + (adaptive ? "" : ", not adaptive"));
+    }
+    EXPECT_GT(within, 5u);
+  }
+}
+
+TEST_F(Resume, LimitsMayGrow) {
+  for (const bool adaptive : {true, false}) {
+    options_.adaptive = adaptive;
+    // One sample a pixel, between passes, within passes.
+    for (const int first : {1, 16, 21, 83}) {
+      options_.spp = first;
+      const RenderState state = last_state();
+      EXPECT_NEAR(double(state.so_far.samples) / (36 * 20), first, 0.01 * first) << first;
+      options_.spp = 90;
+      const RenderResult resumed = go_on(state);
+      expect_same(resumed, run(), "from " + std::to_string(first));
+      EXPECT_GT(resumed.seconds, state.so_far.seconds);
+    }
+  }
+}
+
+TEST_F(Resume, StoppedBySignalGoesOn) {
+  options_.spp = 70;
+  const RenderResult whole = run();
+  for (const int cut : {2, 9, 14}) {
+    int saves = 0;
+    std::optional<RenderState> last;
+    RenderHooks hooks;
+    hooks.save_interval = 0;
+    hooks.save = [&](const RenderState& state) {
+      last = state;
+      if (++saves == cut) stop_ = true;
+    };
+    const RenderResult stopped = run(std::move(hooks));
+    ASSERT_EQ(stopped.reason, StopReason::interrupted);
+    EXPECT_EQ(stopped.samples, last->so_far.samples) << "nothing is lost";
+    EXPECT_LT(stopped.samples, whole.samples);
+    expect_same(go_on(*last), whole, "cut " + std::to_string(cut));
+  }
+}
+
+TEST_F(Resume, TargetIsLookedAtWhereItWouldHaveBeen) {
+  options_.spp = 100;
+  options_.target_error = run().error.rel_rmse;
+  options_.spp = 0;
+  const RenderResult whole = run();
+  ASSERT_EQ(whole.reason, StopReason::error);
+  const double spp = double(whole.samples) / (36 * 20);
+  ASSERT_GT(spp, 40);
+  std::vector<RenderState> states;
+  RenderHooks hooks;
+  hooks.save_interval = 0;
+  hooks.save = [&](const RenderState& state) { states.push_back(state); };
+  run(std::move(hooks));
+  for (size_t i = 0; i < states.size(); i += 3)
+    expect_same(go_on(states[i]), whole, "state " + std::to_string(i));
+  // It is enough already.
+  options_.target_error *= 2;
+  const RenderResult again = go_on(states.back());
+  EXPECT_EQ(again.samples, whole.samples);
+  EXPECT_EQ(again.reason, StopReason::error);
+}
+
+TEST_F(Resume, NothingIsRenderedWhenItIsEnough) {
+  options_.spp = 40;
+  const RenderState state = last_state();
+  for (const int spp : {40, 33, 20, 1}) {
+    options_.spp = spp;
+    const RenderResult result = go_on(state);
+    EXPECT_EQ(result.samples, state.so_far.samples);
+    EXPECT_EQ(result.reason, StopReason::samples);
+    EXPECT_EQ(result.film.image().values, state.so_far.film.image().values);
+  }
+  options_.spp = 400;
+  options_.time_limit = state.so_far.seconds / 2;
+  EXPECT_EQ(go_on(state).reason, StopReason::time);
+  EXPECT_EQ(go_on(state).samples, state.so_far.samples);
+}
+
+/// A checkpoint within a pass, in a file.
+class CheckpointFile : public Resume {
+ protected:
+  CheckpointFile() {
+    options_.spp = 40;
+    write_checkpoint(path_, identity_, last_state());
+  }
+  std::string complaint(const std::string& bytes) {
+    const std::string path = folder_.write("b.ckpt", bytes);
+    try {
+      read_checkpoint(path);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::input);
+      EXPECT_THAT(error.what(), testing::StartsWith(path + ": "));
+      return error.what();
+    }
+    return "no complaint";
+  }
+
+  const TemporaryFolder folder_;
+  const std::string path_ = folder_.file("a.ckpt");
+  const RenderIdentity identity_{{"seed", "1"}, {"camera", "\u00e4"}};
+};
+
+TEST_F(CheckpointFile, HoldsAll) {
+  const Checkpoint checkpoint = read_checkpoint(path_);
+  EXPECT_EQ(checkpoint.identity, identity_);
+  const RenderState& state = *checkpoint.state;
+  EXPECT_EQ(state.pass.size(), 16u);
+  EXPECT_EQ(state.done, 32u);
+  EXPECT_EQ(state.so_far.convergence.size(), 2u);
+  options_.spp = 70;
+  expect_same(go_on(state), run(), "from a file");
+  // The same file again.
+  write_checkpoint(folder_.file("c.ckpt"), identity_, state);
+  EXPECT_EQ(read_file(folder_.file("c.ckpt")), read_file(path_));
+  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"a.ckpt", "c.ckpt"}));
+}
+
+TEST_F(CheckpointFile, DamageIsFound) {
+  const std::string bytes = read_file(path_);
+  ASSERT_GT(bytes.size(), 36u * 20 * 100);
+  for (size_t length = 0; length < bytes.size(); length += 1 + length / 7)
+    EXPECT_THAT(complaint(bytes.substr(0, length)), testing::Not(HasSubstr("no complaint"))) << length;
+  EXPECT_THAT(complaint(bytes.substr(0, bytes.size() - 1)), HasSubstr("is damaged"));
+  EXPECT_THAT(complaint(bytes + "x"), HasSubstr("is damaged"));
+  for (size_t at = 0; at < bytes.size(); at += 1 + at / 5) {
+    std::string changed = bytes;
+    changed[at] = char(changed[at] ^ 4);
+    EXPECT_THAT(complaint(changed), testing::Not(HasSubstr("no complaint"))) << at;
+  }
+  EXPECT_THAT(complaint("glTF and so on, at least as long as a checkpoint begins"),
+              HasSubstr("is not a checkpoint"));
+  std::string newer = bytes;
+  newer[8] = 9;
+  EXPECT_THAT(complaint(newer), HasSubstr("format 9; this version reads format 1"));
+}
+
+TEST_F(CheckpointFile, CannotBeReadOrWritten) {
+  EXPECT_THROW(read_checkpoint(folder_.file("none.ckpt")), Error);
+  EXPECT_THROW(read_checkpoint(folder_.path().string()), Error);
+  EXPECT_THROW(write_checkpoint(folder_.file("no/a.ckpt"), identity_, last_state()), Error);
+}
+
+TEST(RenderIdentityTest, NamesWhatDiffers) {
+  const RenderIdentity a{{"seed", "1"}, {"size", "4x4"}, {"crop", "2x2+0+0"}};
+  const RenderIdentity b{{"seed", "2"}, {"size", "4x4"}, {"show", "depth"}};
+  EXPECT_NO_THROW(require_same_render("a.ckpt", a, a));
+  try {
+    require_same_render("a.ckpt", a, b);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "a.ckpt: is of another render: seed was 1, is 2; show was none, is depth; crop was 2x2+0+0, "
+                 "is none");
+  }
+}
+
+}  // namespace
+}  // namespace vernier::test
