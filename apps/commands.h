@@ -36,6 +36,7 @@ void register_render(Program& program);
 void register_info(Program& program);
 void register_compare(Program& program);
 void register_denoise(Program& program);
+void register_merge(Program& program);
 void register_bench(Program& program);
 
 }  // namespace vernier::apps

@@ -15,7 +15,7 @@ namespace {
 
 /// Every subcommand, in the order of `vernier --help`.
 constexpr void (*subcommands[])(Program&) = {
-    register_render, register_info, register_compare, register_denoise, register_bench,
+    register_render, register_info, register_compare, register_denoise, register_merge, register_bench,
 };
 
 ExitCode exit_code(ErrorKind kind) {
