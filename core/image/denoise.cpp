@@ -30,7 +30,7 @@ struct BlockSums {
 
 /// What a pixel's error is relative to, in place of the truth: its denoised value. Lights that the filter
 /// took away would count as many times themselves, so where both halves saw far more it is what they agree
-/// on, and in any case a third of what they saw on average (as in error_estimate.cpp).
+/// on, and in any case a third of what they saw on average.
 double truth_like(double a, double b, double denoised) {
   constexpr double far = 4;
   const double confirmed = std::min(a, b);

@@ -1,0 +1,112 @@
+#include "core/image/pixel_evidence.h"
+
+#include "core/base/parallel.h"
+
+namespace vernier {
+namespace {
+
+constexpr uint32_t fewest_samples = 8;       // fewer say too little about a pixel's tail
+constexpr double heavy_share = 0.25;         // of a pixel's light in one sample
+constexpr double surprising_variance = 30;   // times what is usual around the pixel
+constexpr double common_surprise = 0.05;     // of a neighbourhood's pixels
+constexpr double least_log_variance = 1e-8;  // relative; keeps logarithms finite
+
+/// Calls visit(x, y) for the pixels of the square of side 2 radius + 1 around (x, y) that exist.
+template <typename Visit>
+void for_each_near(const Film& film, int x, int y, int radius, const Visit& visit) {
+  for (int j = std::max(0, y - radius); j <= std::min(film.height() - 1, y + radius); ++j)
+    for (int i = std::max(0, x - radius); i <= std::min(film.width() - 1, x + radius); ++i) visit(i, j);
+}
+
+/// The pixel drawn towards the mean of its eight neighbours, the more the noisier it is: by its variance
+/// against how much the truth varies here (empirical Bayes; Efron and Morris 1973, "Stein's Estimation Rule
+/// and Its Competitors"). The halves' errors are independent, so the product of their distances from that
+/// mean shows what is no noise.
+Vec3d likely_value(const Film& film, int x, int y) {
+  const Vec3d own = film.pixel(x, y);
+  Vec3d mean(0, 0, 0);
+  int neighbours = -1;
+  for_each_near(film, x, y, 1, [&](int i, int j) {
+    mean += film.pixel(i, j);
+    ++neighbours;
+  });
+  if (neighbours == 0) return own;
+  mean = (mean - own) / double(neighbours);
+  Vec3d truth(0, 0, 0);
+  for_each_near(film, x, y, 1, [&](int i, int j) {
+    truth += (film.half_mean(i, j, 0) - mean) * (film.half_mean(i, j, 1) - mean);
+  });
+  truth = max(truth / double(neighbours + 1), Vec3d(0, 0, 0));
+  const Vec3d noise = independent_variance(film, x, y);
+  Vec3d likely = own;
+  for (int c = 0; c < 3; ++c)
+    if (noise[c] > 0) likely[c] = mean[c] + truth[c] / (truth[c] + noise[c]) * (own[c] - mean[c]);
+  return max(likely, Vec3d(0, 0, 0));
+}
+
+double log_relative_variance(const Film& film, const Image& likely, int x, int y) {
+  const Vec3d variance = independent_variance(film, x, y);
+  double sum = 0;
+  for (int c = 0; c < 3; ++c)
+    sum += variance[c] / (square(likely.pixel(x, y)[c]) + relative_error_epsilon) / 3;
+  return std::log(sum + least_log_variance);
+}
+
+/// Whether a single sample makes the pixel something else than what is usual around it.
+bool is_surprising(const Film& film, const Image& log_variance, int x, int y) {
+  if (film.samples(x, y) < fewest_samples) return true;
+  if (film.largest_share(x, y) <= heavy_share) return false;
+  const double own = *log_variance.pixel(x, y);
+  double sum = -own;
+  int neighbours = -1;
+  for_each_near(film, x, y, 2, [&](int i, int j) {
+    sum += *log_variance.pixel(i, j);
+    ++neighbours;
+  });
+  return neighbours == 0 || own - sum / neighbours > std::log(surprising_variance);
+}
+
+template <typename Body>
+void for_each_pixel(const Film& film, const Body& body) {
+  parallel_for(size_t(film.height()), [&](size_t row) {
+    for (int x = 0; x < film.width(); ++x) body(x, int(row));
+  });
+}
+
+}  // namespace
+
+Vec3d squared_half_difference(const Film& film, int x, int y) {
+  const Vec3d d = (film.half_mean(x, y, 0) - film.half_mean(x, y, 1)) / 2.0;
+  return d * d;
+}
+
+Vec3d independent_variance(const Film& film, int x, int y) {
+  return (film.half_mean_variance(x, y, 0) + film.half_mean_variance(x, y, 1)) / 4.0;
+}
+
+PixelEvidence gather_evidence(const Film& film) {
+  const int width = film.width(), height = film.height();
+  PixelEvidence evidence{Image(width, height, 3), Image(width, height, 1)};
+  Image log_variance(width, height, 1), surprising(width, height, 1);
+  for_each_pixel(film, [&](int x, int y) {
+    const Vec3d likely = likely_value(film, x, y);
+    for (int c = 0; c < 3; ++c) evidence.likely.pixel(x, y)[c] = float(likely[c]);
+    *log_variance.pixel(x, y) = float(log_relative_variance(film, evidence.likely, x, y));
+  });
+  for_each_pixel(film, [&](int x, int y) {
+    *surprising.pixel(x, y) = is_surprising(film, log_variance, x, y) ? 1.f : 0.f;
+  });
+  // Where such samples are found here and there, the other pixels may owe light to some not yet drawn.
+  for_each_pixel(film, [&](int x, int y) {
+    int found = 0, pixels = 0;
+    for_each_near(film, x, y, 3, [&](int i, int j) {
+      found += *surprising.pixel(i, j) != 0;
+      ++pixels;
+    });
+    const bool unreliable = *surprising.pixel(x, y) != 0 || found > common_surprise * pixels;
+    *evidence.unreliable.pixel(x, y) = unreliable ? 1.f : 0.f;
+  });
+  return evidence;
+}
+
+}  // namespace vernier
