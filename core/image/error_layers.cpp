@@ -8,16 +8,17 @@ namespace {
 constexpr int radius = 7;  // pixels: at best 225 squared differences, which say their mean to a tenth
 constexpr float own_weight = 0.7f;             // at most, of a pixel's own variance
 constexpr float floor_variance = 1e-8f;        // relative; keeps logarithms finite
-const float like_brightness = std::log(1.5f);  // pixels alike differ by less: in brightness,
-const float like_variance = std::log(16.f);    // and in variance
+const float like_brightness = std::log(1.5f);  // pixels alike differ by less: in brightness
+const float like_variance = std::log(16.f);    // and in modelled variance,
+const float most_surprise = std::log(30.f);    // and show no variance beyond the model by more
 
 /// One channel of one pixel, in units of the square of its brightness, r^2 + epsilon.
 struct Facts {
   float log_brightness = 0;
-  float log_variance = 0;  ///< of its mean, were its samples independent
-  float log_noise = 0;     ///< variance of log_variance, from the one that each half shows
-  float difference = 0;    ///< squared half difference
-  float model = 0;         ///< log_variance, drawn towards that of the pixels alike
+  float log_variance = 0;             ///< of its mean, were its samples independent
+  float log_half[Film::halves] = {};  ///< the same as each half says
+  float difference = 0;               ///< squared half difference
+  float model = 0;                    ///< log_variance, drawn towards that of the pixels alike
 };
 
 /// One channel of an image.
@@ -31,54 +32,64 @@ class Channel {
 
   /// Variance of the pixel's value. The model knows only spreads of samples: what stratification gains, the
   /// differences of the halves say, over the pixels alike in brightness and variance. (An edge of a lamp is
-  /// bright, varied and gains much, the wall beside it is none of these.)
+  /// bright, varied and gains much, the wall beside it is none of these.) A firefly's difference says nothing
+  /// of pixels that have none. Few squares know their mean badly, and intervals then have to be wider, as
+  /// Student's are: by the relative variance of the squares' sum.
   double variance(int x, int y) const {
     const Facts& own = at(x, y);
-    double differences = 0, models = 0;
+    const float most = own.model + most_surprise;
+    double differences = 0, squares = 0, models = 0;
     for_each_alike(x, y, [&](const Facts& other) {
       if (!(std::abs(other.model - own.model) < like_variance)) return;
+      if (other.log_variance > most && own.log_variance <= most) return;
       differences += other.difference;
+      squares += square(double(other.difference));
       models += std::exp(other.model);
     });
-    return std::exp(2 * double(own.log_brightness) + own.model) * differences / models;
+    if (!(differences > 0)) return 0;
+    const double widening = 1 + squares / square(differences);
+    return std::exp(2 * double(own.log_brightness) + own.model) * differences / models * widening;
   }
 
  private:
   static Facts look(const Film& film, double likely, int x, int y, int channel) {
     const double brightness = likely * likely + relative_error_epsilon;
-    float log_half[Film::halves];
+    Facts facts;
     double mean = 0;
     for (int half = 0; half < Film::halves; ++half) {
       const double variance = film.half_mean_variance(x, y, half)[channel] / 2 / brightness;
-      log_half[half] = std::log(float(variance) + floor_variance);
-      mean += variance / 2;
+      facts.log_half[half] = std::log(float(variance) + floor_variance);
+      mean += variance / Film::halves;
     }
-    Facts facts;
     facts.log_brightness = float(std::log(brightness) / 2);
     facts.log_variance = std::log(float(mean) + floor_variance);
-    facts.log_noise = square((log_half[0] - log_half[1]) / 2);
     facts.difference = float(squared_half_difference(film, x, y)[channel] / brightness);
     return facts;
   }
 
   /// A few samples know a variance badly, the worse the heavier their tails, and a pixel that has missed the
-  /// tail does not know that it has. So it is drawn towards the mean of the pixels alike in brightness, the
-  /// more the less it differs from them truly (empirical Bayes, on logarithms; Smyth 2004, "Linear Models and
-  /// Empirical Bayes Methods").
+  /// tail does not know that it has. So it is drawn towards the mean of the pixels alike in brightness, by
+  /// how much of the variances' variation the halves have in common: the rest is noise (empirical Bayes, on
+  /// logarithms; Smyth 2004, "Linear Models and Empirical Bayes Methods").
   float model(int x, int y) const {
-    float sum = 0, squares = 0, noise = 0;
+    float sum = 0, squares = 0, half_sum[Film::halves] = {}, product = 0;
     int count = 0;
     const float own = at(x, y).log_variance;
     for_each_alike(x, y, [&](const Facts& other) {
       const float apart = other.log_variance - own;
+      const float first = other.log_half[0] - own, second = other.log_half[1] - own;
       sum += apart;
       squares += apart * apart;
-      noise += other.log_noise;
+      half_sum[0] += first;
+      half_sum[1] += second;
+      product += first * second;
       ++count;
     });
-    const float mean = sum / float(count), spread = squares / float(count) - mean * mean;
-    const float truth = spread > 0 ? 1 - noise / float(count) / spread : 0;
-    return own + mean * (1 - std::clamp(truth, 0.f, own_weight));
+    const auto n = float(count);
+    const float mean = sum / n, variance = squares / n - mean * mean;
+    const float common = product / n - half_sum[0] / n * (half_sum[1] / n);
+    const float weight = variance > 0 ? std::clamp(common / variance, 0.f, own_weight) : 0;
+    return own + mean * (1 - weight);
   }
 
   template <typename Visit>
