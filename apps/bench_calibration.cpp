@@ -44,6 +44,8 @@ void print_report(const Json& report) {
              report["runs"].get<size_t>(), figure(image["ratio_of_means"]));
   fmt::print("95 % interval holds the truth in {:.0f} % of them; true above 1.1 x estimated in {}\n",
              100 * image["interval_covers"].get<double>(), image["true_above_1.1_estimated"].get<size_t>());
+  if (const Json& above = image["true_above_1.1_asked"]; !above.is_null())
+    fmt::print("true above 1.1 x asked in {}\n", above.get<size_t>());
 }
 
 ExitCode run_bench_calibration(const CalibrationFlags& flags, const Program& program) {
@@ -68,7 +70,7 @@ ExitCode run_bench_calibration(const CalibrationFlags& flags, const Program& pro
   const Reference reference = render_reference(scene, camera, options, flags.reference_spp, max_depth);
   const auto integrator =
       find_by_name(integrators(), "integrator", "path").make(flags.render.integrator_options);
-  Calibration calibration(reference);
+  Calibration calibration(reference, options.target_error);
   for (int seed = 1; seed <= flags.seeds; ++seed) {
     options.seed = uint64_t(seed);
     calibration.add(render(scene, camera, *integrator, options, never_stop));

@@ -32,8 +32,8 @@ Json ratio(double a, double b) { return b > 0 ? Json(a / b) : Json(nullptr); }
 
 }  // namespace
 
-Calibration::Calibration(const Reference& reference)
-    : reference_(reference), decile_of_pixel_(deciles_by_luminance(reference.picture)) {}
+Calibration::Calibration(const Reference& reference, double asked)
+    : reference_(reference), asked_(asked), decile_of_pixel_(deciles_by_luminance(reference.picture)) {}
 
 void Calibration::add(const RenderResult& result) {
   const vernier::Image picture = result.film.image();
@@ -74,7 +74,7 @@ Json Calibration::json() const {
     deciles.push_back({{"values", sums.values},
                        {"predicted_over_actual", ratio(std::sqrt(sums.predicted), std::sqrt(sums.actual))}});
   std::vector<double> estimated, truths, ratios;
-  size_t inside = 0, stopped_too_early = 0;
+  size_t inside = 0, above_estimate = 0, above_asked = 0;
   double estimated_squares = 0, true_squares = 0;
   for (const Image& image : images_) {
     estimated.push_back(image.estimated);
@@ -83,7 +83,8 @@ Json Calibration::json() const {
     estimated_squares += square(image.estimated);
     true_squares += square(image.truth);
     inside += image.low <= image.truth && image.truth <= image.high;
-    stopped_too_early += image.truth > 1.1 * image.estimated;
+    above_estimate += image.truth > 1.1 * image.estimated;
+    above_asked += image.truth > 1.1 * asked_;
   }
   const auto [lowest, highest] = std::minmax_element(ratios.begin(), ratios.end());
   return {{"runs", images_.size()},
@@ -96,7 +97,8 @@ Json Calibration::json() const {
             {"ratio", {{"median", median(ratios)}, {"low", *lowest}, {"high", *highest}}},
             {"ratio_of_means", ratio(std::sqrt(estimated_squares), std::sqrt(true_squares))},
             {"interval_covers", double(inside) / double(images_.size())},
-            {"true_above_1.1_estimated", stopped_too_early}}}};
+            {"true_above_1.1_estimated", above_estimate},
+            {"true_above_1.1_asked", asked_ > 0 ? Json(above_asked) : Json(nullptr)}}}};
 }
 
 }  // namespace vernier::apps

@@ -21,7 +21,8 @@ constexpr std::array<NominalCoverage, 4> nominal_coverages{
 /// Adds up many renders of one picture, which differ in their seeds, against a reference with error layer.
 class Calibration {
  public:
-  explicit Calibration(const Reference& reference);
+  /// `asked`: the error at which each render was told to stop; 0: none.
+  explicit Calibration(const Reference& reference, double asked = 0);
 
   void add(const RenderResult& result);
 
@@ -39,6 +40,7 @@ class Calibration {
   void add_value(double difference, double error, double reference_error, size_t decile);
 
   const Reference& reference_;
+  const double asked_;
   std::vector<uint8_t> decile_of_pixel_;  ///< by luminance of the reference
   std::array<Decile, 10> deciles_{};
   std::array<size_t, nominal_coverages.size()> covered_{};

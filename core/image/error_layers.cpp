@@ -18,7 +18,8 @@ struct Facts {
   float log_variance = 0;             ///< of its mean, were its samples independent
   float log_half[Film::halves] = {};  ///< the same as each half says
   float difference = 0;               ///< squared half difference
-  float model = 0;                    ///< log_variance, drawn towards that of the pixels alike
+  float log_model = 0;                ///< log_variance, drawn towards that of the pixels alike
+  float model = 0;                    ///< its exponential
 };
 
 /// One channel of an image.
@@ -27,7 +28,11 @@ class Channel {
   Channel(const Film& film, const Image& likely, int channel)
       : width_(film.width()), height_(film.height()), facts_(size_t(width_) * height_) {
     for_each_pixel([&](int x, int y) { at(x, y) = look(film, likely.pixel(x, y)[channel], x, y, channel); });
-    for_each_pixel([&](int x, int y) { at(x, y).model = model(x, y); });
+    for_each_pixel([&](int x, int y) {
+      Facts& facts = at(x, y);
+      facts.log_model = log_model(x, y);
+      facts.model = std::exp(facts.log_model);
+    });
   }
 
   /// Variance of the pixel's value. The model knows only spreads of samples: what stratification gains, the
@@ -37,18 +42,18 @@ class Channel {
   /// Student's are: by the relative variance of the squares' sum.
   double variance(int x, int y) const {
     const Facts& own = at(x, y);
-    const float most = own.model + most_surprise;
+    const float most = own.log_model + most_surprise;
     double differences = 0, squares = 0, models = 0;
     for_each_alike(x, y, [&](const Facts& other) {
-      if (!(std::abs(other.model - own.model) < like_variance)) return;
+      if (!(std::abs(other.log_model - own.log_model) < like_variance)) return;
       if (other.log_variance > most && own.log_variance <= most) return;
       differences += other.difference;
       squares += square(double(other.difference));
-      models += std::exp(other.model);
+      models += double(other.model);
     });
     if (!(differences > 0)) return 0;
     const double widening = 1 + squares / square(differences);
-    return std::exp(2 * double(own.log_brightness) + own.model) * differences / models * widening;
+    return std::exp(2 * double(own.log_brightness) + own.log_model) * differences / models * widening;
   }
 
  private:
@@ -71,7 +76,7 @@ class Channel {
   /// tail does not know that it has. So it is drawn towards the mean of the pixels alike in brightness, by
   /// how much of the variances' variation the halves have in common: the rest is noise (empirical Bayes, on
   /// logarithms; Smyth 2004, "Linear Models and Empirical Bayes Methods").
-  float model(int x, int y) const {
+  float log_model(int x, int y) const {
     float sum = 0, squares = 0, half_sum[Film::halves] = {}, product = 0;
     int count = 0;
     const float own = at(x, y).log_variance;
