@@ -63,7 +63,8 @@ class Renderer {
   }
   double samples_per_pixel() const { return double(result().samples) / (double(crop_.width) * crop_.height); }
   double seconds() const {
-    return seconds_before_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    const std::chrono::duration<double> running = std::chrono::steady_clock::now() - start_;
+    return seconds_before_ + running.count() - saving_;
   }
   bool out_of_time() const { return seconds() >= options_.time_limit; }
 
@@ -235,7 +236,7 @@ class Renderer {
   const double seconds_before_;  ///< of rendering, by those who did what state_ began with
   double reported_ = 0;
   double next_save_ = 0;
-  double saving_ = 0;  ///< seconds
+  double saving_ = 0;  ///< seconds taken by saves, in which nothing was rendered
   std::atomic<bool> unsaved_ = false;
   std::optional<StopReason> reason_;
   std::mutex mutex_;
