@@ -105,7 +105,7 @@ void register_merge(Program& program) {
       program.app.add_subcommand("merge", "Put renders of one picture by several seeds together");
   auto flags = std::make_shared<MergeFlags>();
   command->add_option("CHECKPOINT", flags->inputs, "two or more, of 'vernier render --checkpoint'")
-      ->type_name("...");
+      ->type_name("");
   command->add_option("-o,--output", flags->output, "picture of all their samples, .exr")->type_name("FILE");
   command
       ->add_option("--aov,--layers", flags->layers,

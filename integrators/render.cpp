@@ -175,7 +175,7 @@ class Renderer {
     unsaved_ = false;
     const double duration = seconds() - start;
     saving_ += duration;
-    next_save_ = start + std::max(hooks_.save_interval, 20 * duration);
+    next_save_ = start + (hooks_.save_interval > 0 ? std::max(hooks_.save_interval, 20 * duration) : 0);
   }
 
   void render_sample(int x, int y, int half, bool guides, Totals& totals) {

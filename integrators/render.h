@@ -76,9 +76,9 @@ struct RenderResult {
 /// Who is told of a render on its way, and where it starts.
 struct RenderHooks {
   std::function<void(const RenderProgress&)> observe = {};
-  /// Gets the state after each `save_interval` seconds of rendering, or twenty times as long as the last save
-  /// took, and once at the end. Called on the thread that called render() while nothing is rendered; its time
-  /// counts nowhere.
+  /// Gets the state after each `save_interval` seconds of rendering, but no sooner than after twenty times as
+  /// long as the last save took (0: after every tile), and once at the end. Called on the thread that called
+  /// render() while nothing is rendered; its time counts nowhere.
   std::function<void(const RenderState&)> save = {};
   double save_interval = std::numeric_limits<double>::infinity();
   /// A state (integrators/render_state.h) to go on from, of a render with the same options but for its
