@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "apps/flags.h"
 #include "core/base/text_file.h"
 #include "scene/import/asset_files.h"
 
@@ -63,6 +64,22 @@ RenderIdentity identity_of(const RenderRequest& request, const RenderReport& rep
 }
 
 }  // namespace
+
+void add_checkpoint_flags(CLI::App& command, RenderFlags& flags) {
+  command.option_defaults()->group("Long renders");
+  command
+      .add_option("--checkpoint", flags.checkpoint,
+                  "keep the state of the render in this file: now and then, and at its end (docs/resume.md)")
+      ->type_name("FILE");
+  command.add_option("--checkpoint-every", flags.checkpoint_every, "how often: 60s, 10m, 1h")
+      ->check(parsed_by(parse_seconds))
+      ->type_name("TIME")
+      ->capture_default_str();
+  command
+      .add_option("--resume", flags.resume,
+                  "go on from this checkpoint, to the limits given now; they count from the beginning")
+      ->type_name("FILE");
+}
 
 Checkpointing::Checkpointing(const RenderFlags& flags, NoticeLog& log) : flags_(flags), log_(log) {
   if (!flags.checkpoint.empty()) check_writable_text_file(flags.checkpoint);

@@ -11,7 +11,10 @@
 
 namespace vernier::apps {
 
-/// --checkpoint and --resume of one render.
+/// Declares --checkpoint and --resume on `command`.
+void add_checkpoint_flags(CLI::App& command, RenderFlags& flags);
+
+/// What they ask of one render.
 class Checkpointing {
  public:
   /// Reads the checkpoint to resume from and sees that one can be written. Throws Error.

@@ -168,6 +168,7 @@ void register_render(Program& program) {
   CLI::App* command = program.app.add_subcommand("render", "Render a glTF scene to pictures");
   auto flags = std::make_shared<RenderFlags>();
   add_render_flags(*command, *flags);
+  add_checkpoint_flags(*command, *flags);
   command->footer("Example: vernier render scene.glb -o out.exr -o out.png --time 1m");
   command->callback([&program, flags] {
     program.run = [&program, flags] { return run_render(*flags, program.command_line); };

@@ -127,22 +127,6 @@ void add_output_flags(CLI::App& command, RenderFlags& flags) {
   command.add_flag("-v,--verbose", flags.verbose, "say more");
 }
 
-void add_checkpoint_flags(CLI::App& command, RenderFlags& flags) {
-  command.option_defaults()->group("Long renders");
-  command
-      .add_option("--checkpoint", flags.checkpoint,
-                  "keep the state of the render in this file: now and then, and at its end (docs/resume.md)")
-      ->type_name("FILE");
-  command.add_option("--checkpoint-every", flags.checkpoint_every, "how often: 60s, 10m, 1h")
-      ->check(parsed_by(parse_seconds))
-      ->type_name("TIME")
-      ->capture_default_str();
-  command
-      .add_option("--resume", flags.resume,
-                  "go on from this checkpoint, to the limits given now; they count from the beginning")
-      ->type_name("FILE");
-}
-
 template <typename Table>
 void print_table(const Table& table) {
   for (const auto& entry : table) fmt::print("{:<12} {}\n", entry.name, entry.description);
@@ -271,7 +255,6 @@ void add_render_flags(CLI::App& command, RenderFlags& flags) {
   add_quality_flags(command, flags);
   add_integrator_flags(command, flags);
   add_output_flags(command, flags);
-  add_checkpoint_flags(command, flags);
 }
 
 void check_picture_size(const RenderOptions& options, std::span<const Layer> layers) {
