@@ -158,24 +158,30 @@ std::optional<LightBounds> TriangleLight::bounds() const {
 void TriangleLight::measure_emission() {
   // The bound on cells keeps meshes of very many triangles small in memory.
   constexpr float most_cells = 1 << 22;
-  std::array<SurfaceAttributes, 3> corners;
-  if (material_->needs_attributes())
-    corners = {geometry_->attributes(geometry_->surface_point(instance_, primitive_, {0, 0})),
-               geometry_->attributes(geometry_->surface_point(instance_, primitive_, {1, 0})),
-               geometry_->attributes(geometry_->surface_point(instance_, primitive_, {0, 1}))};
+  const auto attributes = [&](const Vec2f& barycentrics) {
+    if (!material_->needs_attributes()) return SurfaceAttributes{};
+    SurfacePoint point;
+    point.instance = instance_;
+    point.primitive = primitive_;
+    point.u = barycentrics.x;
+    point.v = barycentrics.y;
+    return geometry_->attributes(point);
+  };
   const float limit = std::clamp(most_cells / float(geometry_->triangle_count(instance_)), 1.f, 1024.f);
-  const float texels = material_->emissive_texels(corners);
-  const int cells = texels > 1 ? int(std::sqrt(std::min(texels, limit))) : 1;  // a side
-  const int steps = material_->emits_evenly() ? 1 : std::max(2, 12 / cells);   // readings across a cell
+  const float texels =
+      material_->emissive_texels({attributes({0, 0}), attributes({1, 0}), attributes({0, 1})});
+  // Two texels a side of a cell, and as many readings.
+  const int cells = texels > 4 ? int(std::sqrt(std::min(texels / 4, limit))) : 1;
+  const int steps = material_->emits_evenly() ? 1 : std::max(2, 12 / cells);  // readings across a cell
   std::vector<float> values(size_t(cells) * cells);
   double sum = 0, squares = 0;
   for (int y = 0; y < cells; ++y)
     for (int x = 0; x < cells; ++x) {
       Rgb total(0, 0, 0);
       for (int i = 0; i < steps * steps; ++i) {
-        const Vec2f u((float(x * steps + i % steps) + 0.5f) / float(cells * steps),
-                      (float(y * steps + i / steps) + 0.5f) / float(cells * steps));
-        for (const bool front : {true, false}) total += emission(sample_triangle(u), front, normal_);
+        const Vec2f place = sample_triangle({(float(x * steps + i % steps) + 0.5f) / float(cells * steps),
+                                             (float(y * steps + i / steps) + 0.5f) / float(cells * steps)});
+        total += material_->emission(attributes(place), true, 1);
       }
       float& value = values[size_t(y) * cells + x];
       value = luminance(total) / float(steps * steps);
@@ -183,7 +189,7 @@ void TriangleLight::measure_emission() {
       squares += double(value) * value;
     }
   const double mean = sum / double(values.size());
-  power_ = pi * area_ * float(mean);
+  power_ = pi * area_ * float(mean) * (material_->double_sided() ? 2 : 1);
   // As even as this, it is not worth a table.
   if (!(squares / double(values.size()) > 1.1 * mean * mean)) return;
   // What the readings missed is found by this part of the samples.
