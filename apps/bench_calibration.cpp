@@ -53,7 +53,7 @@ ExitCode run_bench_calibration(const CalibrationFlags& flags, const Program& pro
   if (!flags.json.empty()) check_writable_text_file(flags.json);
   NoticeLog log(false);
   SceneDescription description = import_scene(flags.render.scene, flags.render.import);
-  if (auto environment = read_environment(flags.render)) description.environment = std::move(environment);
+  surround(description, read_environment(flags.render));
   log.add(description.notices);
   const auto chosen = choose_camera(description.cameras, flags.render.camera, log);
   const Scene scene(std::move(description), {});

@@ -223,7 +223,7 @@ SceneConvergence measure_convergence(const ConvergencePlan& plan, size_t index, 
   const std::string& file = plan.scenes[index];
   auto start = Clock::now();
   SceneDescription description = import_scene(file, plan.render.import);
-  if (auto environment = read_environment(plan.render)) description.environment = std::move(environment);
+  surround(description, read_environment(plan.render));
   const double load_seconds = seconds_since(start);
   log.add(description.notices);
   std::optional<Reference> given;

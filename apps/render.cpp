@@ -87,7 +87,7 @@ void write_pictures(const RenderRequest& request, const LayeredImage& picture, c
 SceneDescription load_scene(const RenderRequest& request, RenderReport& report) {
   const RenderFlags& flags = request.flags;
   SceneDescription description = import_scene(flags.scene, flags.import);
-  if (request.environment) description.environment = request.environment;
+  surround(description, request.environment);
   report.scene_file = flags.scene;
   report.scene_hash = description.hash;
   report.counts = count(description);

@@ -245,6 +245,14 @@ std::shared_ptr<const EnvironmentDescription> read_environment(const RenderFlags
   return environment;
 }
 
+void surround(SceneDescription& scene, std::shared_ptr<const EnvironmentDescription> environment) {
+  if (!environment) return;
+  if (scene.environment)
+    scene.notices.push_back(
+        {Notice::Severity::info, "", "--env is used instead of the file's own environment"});
+  scene.environment = std::move(environment);
+}
+
 void add_render_flags(CLI::App& command, RenderFlags& flags) {
   command
       .add_option("-o,--output", flags.outputs,

@@ -72,6 +72,9 @@ void add_environment_flags(CLI::App& command, RenderFlags& flags);
 /// Null: the scene's own. Throws Error.
 std::shared_ptr<const EnvironmentDescription> read_environment(const RenderFlags& flags);
 
+/// Puts surroundings, if any, in place of the scene's own, and notes if it had some.
+void surround(SceneDescription& scene, std::shared_ptr<const EnvironmentDescription> environment);
+
 /// Prints the list that a flag given as "help" asks for; false when none was.
 bool print_requested_list(const RenderFlags& flags);
 

@@ -18,6 +18,10 @@ struct ExtensionEntry {
 
 /// What the renderer makes of each extension. One that is not here is not known at all.
 constexpr ExtensionEntry extensions[] = {
+    {"EXT_lights_image_based", Status::approximated,
+     "the sharpest cube map lights everything, at its own resolution (Prefiltered Specular Radiance "
+     "Cubemaps); light "
+     "paths blur it themselves, so blurred ones and Irradiance Coefficients are not used"},
     {"EXT_mesh_gpu_instancing", Status::exact, ""},
     {"EXT_meshopt_compression", Status::exact, ""},
     {"EXT_texture_webp", Status::exact, ""},
@@ -46,7 +50,6 @@ constexpr ExtensionEntry extensions[] = {
     {"KHR_texture_transform", Status::exact, ""},
     {"KHR_xmp_json_ld", Status::exact, "metadata, nothing to render"},
 
-    {"EXT_lights_image_based", Status::ignored, "light it with --env instead"},
     {"KHR_animation_pointer", Status::ignored, "only nodes and morph weights are animated"},
     {"KHR_materials_pbrSpecularGlossiness", Status::ignored,
      "archived; the metallic-roughness values are used"},

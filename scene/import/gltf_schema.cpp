@@ -255,7 +255,21 @@ struct GltfSchema {
                            {"name", text()},
                            {"extensions", object(node_extensions)}},
                           {}};
-  const ObjectSchema scene{{{"nodes", array(index_into("/nodes"))}, {"name", text()}}, {}};
+  const ValueRule cube_faces{
+      .kind = Kind::array, .items = {index_into("/images")}, .min_items = 6, .max_items = 6};
+  const ObjectSchema image_light{{{"intensity", number(0)},
+                                  {"rotation", numbers(4)},
+                                  {"specularImageSize", integer(1, max_int), required},
+                                  {"specularImages", array(cube_faces, 1), required},
+                                  {"name", text()}},
+                                 {}};
+  const ObjectSchema image_lights{{{"lights", array(object(image_light)), required}}, {}};
+  const ObjectSchema image_light_use{
+      {{"light", index_into("/extensions/EXT_lights_image_based/lights"), required}}, {}};
+  const ObjectSchema scene_extensions{{{"EXT_lights_image_based", object(image_light_use)}}, {}};
+  const ObjectSchema scene{
+      {{"nodes", array(index_into("/nodes"))}, {"name", text()}, {"extensions", object(scene_extensions)}},
+      {}};
   const ObjectSchema skin{{{"joints", array(index_into("/nodes"), 1), required},
                            {"inverseBindMatrices", accessor_index},
                            {"skeleton", index_into("/nodes")},
@@ -277,8 +291,10 @@ struct GltfSchema {
   const ObjectSchema asset{{{"version", text(), required}, {"minVersion", text()}}, {}};
   const ObjectSchema variant{{{"name", text(), required}}, {}};
   const ObjectSchema variants{{{"variants", array(object(variant)), required}}, {}};
-  const ObjectSchema root_extensions{
-      {{"KHR_lights_punctual", object(lights)}, {"KHR_materials_variants", object(variants)}}, {}};
+  const ObjectSchema root_extensions{{{"EXT_lights_image_based", object(image_lights)},
+                                      {"KHR_lights_punctual", object(lights)},
+                                      {"KHR_materials_variants", object(variants)}},
+                                     {}};
   const ObjectSchema root{{{"asset", object(asset), required},
                            {"extensionsUsed", array(text())},
                            {"extensionsRequired", array(text())},

@@ -6,6 +6,7 @@
 
 #include "scene/import/cameras_lights.h"
 #include "scene/import/features.h"
+#include "scene/import/image_light.h"
 #include "scene/import/instances.h"
 #include "scene/import/materials.h"
 #include "scene/import/meshes.h"
@@ -104,6 +105,7 @@ SceneDescription import_scene(const std::string& path, const ImportOptions& opti
   std::vector<std::string> fingerprints = document.fingerprints();
   keep_used_materials(std::move(materials), scene);
   add_textures(document, scene, fingerprints);
+  scene.environment = read_image_light(document, scene.notices, fingerprints);
   scene.hash = combined_fingerprint(fingerprints);
 
   if (options.strict) check_strictly(document, scene);

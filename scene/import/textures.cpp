@@ -12,41 +12,9 @@
 namespace vernier {
 namespace {
 
-struct DecodedImage {
-  std::shared_ptr<const Image8> pixels;  ///< null: cannot be decoded
-  std::string problem;
-  std::string fingerprint;  ///< empty: in a buffer
-};
-
 bool is_ktx2(std::span<const uint8_t> bytes) {
   const uint8_t signature[] = {0xAB, 'K', 'T', 'X', ' ', '2', '0', 0xBB, '\r', '\n', 0x1A, '\n'};
   return bytes.size() >= sizeof(signature) && std::memcmp(bytes.data(), signature, sizeof(signature)) == 0;
-}
-
-DecodedImage decode(const Document& document, int index) {
-  const ImageSource& source = document.images()[size_t(index)];
-  const std::string place = fmt::format("/images/{}", index);
-  DecodedImage image;
-  Bytes file;
-  std::span<const uint8_t> bytes;
-  if (source.view >= 0) {
-    bytes = document.view(source.view);
-  } else {
-    file = document.files().read_uri(source.uri, place + "/uri");
-    bytes = file.span();
-    if (!source.uri.starts_with("data:")) image.fingerprint = fingerprint(bytes);
-  }
-  if (is_ktx2(bytes)) {
-    image.problem = "KTX2 (Basis Universal) images cannot be decoded";
-    return image;
-  }
-  try {
-    image.pixels = std::make_shared<Image8>(decode_image8(bytes, document.files().scene_path() + place));
-  } catch (const Error& e) {
-    if (e.kind() == ErrorKind::memory) throw;
-    image.problem = e.what();
-  }
-  return image;
 }
 
 /// Images that a texture may be read from, the best first.
@@ -68,7 +36,8 @@ void decode_missing(const Document& document, const std::vector<int>& indices,
   for (const int index : indices)
     if (const auto [image, is_new] = images.try_emplace(index); is_new)
       jobs.emplace_back(index, &image->second);
-  for_each_in_parallel(jobs.size(), [&](size_t i) { *jobs[i].second = decode(document, jobs[i].first); });
+  for_each_in_parallel(jobs.size(),
+                       [&](size_t i) { *jobs[i].second = decode_image(document, jobs[i].first); });
 }
 
 /// Decodes each texture's best image, and the next best where that fails.
@@ -109,6 +78,32 @@ std::shared_ptr<const Image8> magenta_texel() {
 }
 
 }  // namespace
+
+DecodedImage decode_image(const Document& document, int index) {
+  const ImageSource& source = document.images()[size_t(index)];
+  const std::string place = fmt::format("/images/{}", index);
+  DecodedImage image;
+  Bytes file;
+  std::span<const uint8_t> bytes;
+  if (source.view >= 0) {
+    bytes = document.view(source.view);
+  } else {
+    file = document.files().read_uri(source.uri, place + "/uri");
+    bytes = file.span();
+    if (!source.uri.starts_with("data:")) image.fingerprint = fingerprint(bytes);
+  }
+  if (is_ktx2(bytes)) {
+    image.problem = "KTX2 (Basis Universal) images cannot be decoded";
+    return image;
+  }
+  try {
+    image.pixels = std::make_shared<Image8>(decode_image8(bytes, document.files().scene_path() + place));
+  } catch (const Error& e) {
+    if (e.kind() == ErrorKind::memory) throw;
+    image.problem = e.what();
+  }
+  return image;
+}
 
 DecodedTextures read_textures(const Document& document, const std::vector<int>& wanted,
                               std::vector<Notice>& notices) {

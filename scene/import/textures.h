@@ -8,6 +8,16 @@
 
 namespace vernier {
 
+/// An image of a file, decoded.
+struct DecodedImage {
+  std::shared_ptr<const Image8> pixels;  ///< null: cannot be decoded
+  std::string problem;
+  std::string fingerprint;  ///< empty: in a buffer
+};
+
+/// Reads and decodes an image by its index. A missing file is Error(input).
+DecodedImage decode_image(const Document& document, int index);
+
 /// Textures of a file, decoded.
 struct DecodedTextures {
   std::vector<Texture> textures;
