@@ -41,13 +41,13 @@ class CubeMap {
   Rgb radiance(const Vec3f& w) const {
     const Vec3f a = abs(w);
     const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
-    const bool negative = w[axis] < 0;
-    const float sign = negative ? -1.f : 1.f;
+    const float sign = w[axis] < 0 ? -1.f : 1.f;
+    const int face = 2 * axis + (w[axis] < 0);
     // To the right and downward, seen from inside.
     const Vec2f place = axis == 0   ? Vec2f(sign * w.z, -w.y)
                         : axis == 1 ? Vec2f(-w.x, sign * w.z)
                                     : Vec2f(-sign * w.x, -w.y);
-    return interpolate(faces_[size_t(2 * axis + negative)], place / a[axis]);
+    return interpolate(faces_[size_t(face)], place / a[axis]);
   }
 
  private:
@@ -77,8 +77,9 @@ Image to_latitude_longitude(const CubeMap& cube, const Imath::Quatf& rotation) {
     for (int x = 0; x < width; ++x) {
       Rgb sum(0, 0, 0);
       for (int i = 0; i < steps * steps; ++i) {
-        const float u = (float(x) + (float(i % steps) + 0.5f) / float(steps)) / float(width);
-        const float v = (float(row) + (float(i / steps) + 0.5f) / float(steps)) / float(height);
+        const int column = x * steps + i % steps, line = int(row) * steps + i / steps;
+        const float u = (float(column) + 0.5f) / float(width * steps);
+        const float v = (float(line) + 0.5f) / float(height * steps);
         const float phi = (2 * u - 1) * pi, theta = v * pi, r = std::sin(theta);
         sum += cube.radiance(back.rotateVector(Vec3f(r * std::cos(phi), std::cos(theta), r * std::sin(phi))));
       }

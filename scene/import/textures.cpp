@@ -44,6 +44,7 @@ void decode_missing(const Document& document, const std::vector<int>& indices,
 std::map<int, DecodedImage> decode_images(const Document& document, const std::vector<int>& textures) {
   std::map<int, DecodedImage> images;
   std::vector<std::vector<int>> candidates;
+  candidates.reserve(textures.size());
   for (const int texture : textures)
     candidates.push_back(candidate_images(document.model().textures[size_t(texture)]));
   for (size_t rank = 0; rank < 3; ++rank) {

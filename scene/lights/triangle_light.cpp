@@ -179,8 +179,10 @@ void TriangleLight::measure_emission() {
     for (int x = 0; x < cells; ++x) {
       Rgb total(0, 0, 0);
       for (int i = 0; i < steps * steps; ++i) {
-        const Vec2f place = sample_triangle({(float(x * steps + i % steps) + 0.5f) / float(cells * steps),
-                                             (float(y * steps + i / steps) + 0.5f) / float(cells * steps)});
+        const int column = x * steps + i % steps, line = y * steps + i / steps;
+        const Vec2f u((float(column) + 0.5f) / float(cells * steps),
+                      (float(line) + 0.5f) / float(cells * steps));
+        const Vec2f place = sample_triangle(u);
         total += material_->emission(attributes(place), true, 1);
       }
       float& value = values[size_t(y) * cells + x];

@@ -61,9 +61,9 @@ TEST(SphericalTriangle, SamplesAreUniform) {
   constexpr int cells = 12;
   for (const Case& t : cases) {
     const SphericalTriangle triangle = seen(t);
-    std::vector<double> shares;
+    std::vector<double> shares(size_t(cells) * cells);
     for (int i = 0; i < cells * cells; ++i)
-      shares.push_back(cell_solid_angle(t, i % cells, i / cells, cells) / double(triangle.solid_angle()));
+      shares[size_t(i)] = cell_solid_angle(t, i % cells, i / cells, cells) / double(triangle.solid_angle());
     EXPECT_TRUE(test::confirmed(test::sidak(1e-3, std::size(cases)), 100'000,
                                 [&](uint64_t seed, uint64_t count) {
                                   test::Random random(seed);

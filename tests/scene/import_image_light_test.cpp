@@ -76,7 +76,7 @@ TEST(ImportImageLight, FacesAreSeenUprightFromInside) {
   const EnvironmentLight light(scene.environment);
   for (size_t i = 0; i < 6; ++i) {
     const View& view = views[i];
-    const Rgb color(float(colors[i][0]), float(colors[i][1]), float(colors[i][2]));
+    const Rgb color{float(colors[i][0]), float(colors[i][1]), float(colors[i][2])};
     expect_radiance(light, view.ahead - view.right * 0.5f + view.up * 0.5f, {1, 1, 1});
     expect_radiance(light, view.ahead + view.right * 0.5f + view.up * 0.5f, color);
     expect_radiance(light, view.ahead - view.right * 0.5f - view.up * 0.5f, color);
@@ -120,9 +120,7 @@ TEST(ImportImageLight, AlphaDividesDecodedColor) {
 }
 
 TEST(ImportImageLight, ResamplingKeepsTheEnergy) {
-  std::vector<PngSource> faces;
-  for (int i = 0; i < 6; ++i) faces.push_back(face(colors[i]));
-  const SceneDescription scene = lit_by(faces).import();
+  const SceneDescription scene = lit_by_colors().import();
   const Image& picture = *scene.environment->picture;
   EXPECT_EQ(picture.width, int(4 * face_size));
   EXPECT_EQ(picture.height, int(2 * face_size));
