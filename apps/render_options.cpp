@@ -46,7 +46,7 @@ void add_quality_flags(CLI::App& command, RenderFlags& flags) {
       ->type_name("TIME");
   command
       .add_option("--error", flags.error,
-                  "stop when the picture's relative RMSE is estimated at this: 1%, 0.01")
+                  "stop when the picture's relative RMSE is this and surely no tenth more: 1%, 0.01")
       ->check(parsed_by(parse_fraction))
       ->type_name("ERROR");
   command

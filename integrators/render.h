@@ -28,8 +28,10 @@ struct RenderOptions {
   Crop crop;                  ///< what is rendered; zero width: everything
   int spp = 64;               ///< samples a pixel on average; 0: until another limit or a stop
   double time_limit = std::numeric_limits<double>::infinity();  ///< seconds of rendering
-  double target_error = 0;  ///< relative RMSE of the image (core/image/error_estimate.h); 0: none
-  bool adaptive = true;     ///< spend samples where they lower the image's error
+  /// Relative RMSE of the image (core/image/error_estimate.h) at which to stop, once the end of its interval
+  /// is at most a tenth above; 0: none.
+  double target_error = 0;
+  bool adaptive = true;  ///< spend samples where they lower the image's error
   uint64_t seed = 0;
 };
 
