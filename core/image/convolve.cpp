@@ -19,7 +19,7 @@ void pad_row(const Image& image, int y, int radius, std::vector<float>& padded) 
 }  // namespace
 
 Image convolve(const Image& image, std::span<const float> horizontal, std::span<const float> vertical) {
-  if (image.empty()) return image;
+  if (image.empty()) return Image(image.width, image.height, image.channels);
   const size_t row_size = size_t(image.width) * image.channels;
   Image across(image.width, image.height, image.channels);
   parallel_for(size_t(image.height), [&](size_t y) {
