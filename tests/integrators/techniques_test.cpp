@@ -1,3 +1,4 @@
+#include "tests/support/effort.h"
 #include "tests/support/test_scenes.h"
 
 // BSDF sampling, light sampling and both combined estimate the same light, with and without Russian roulette.
@@ -129,7 +130,7 @@ TEST(Techniques, Agree) {
         const Samples measured = run(technique, seed, samples);
         // Two such errors add to that of a difference.
         const double error = std::numbers::sqrt2 * measured.standard_error();
-        if (detectable_bias(error, significance) <= view.resolution * measured.mean())
+        if (detectable_bias(error, significance) <= coarsening * view.resolution * measured.mean())
           return factor == 1 ? measured : run(technique, seed, samples * int(factor));
       }
       ADD_FAILURE() << view.name << ": " << technique.name << " is too noisy to compare";

@@ -2,6 +2,7 @@
 
 #include "core/base/parallel.h"
 #include "tests/materials/bsdf_cases.h"
+#include "tests/support/effort.h"
 #include "tests/support/quadrature.h"
 #include "tests/support/random.h"
 #include "tests/support/statistics.h"
@@ -62,7 +63,7 @@ TEST(BsdfChiSquare, SamplesFollowPdf) {
   const auto cases = bsdf_cases();
   const auto directions = outgoing_directions();
   const double significance = sidak(0.01, cases.size() * directions.size());
-  const uint64_t samples = 1'000'000 / directions.size();
+  const uint64_t samples = 1'000'000 / thinning / directions.size();
   const auto follows = [&](const BsdfCase& bsdf_case, const Vec3f& wo) {
     const std::vector<double> fractions = expected_fractions(bsdf_case, wo);
     return confirmed(significance, samples, [&](uint64_t seed, uint64_t count) {

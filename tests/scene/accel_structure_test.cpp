@@ -6,6 +6,7 @@
 #include "scene/accel/proof/agreement.h"
 #include "scene/accel/proof/structure.h"
 #include "tests/scene/accel_support.h"
+#include "tests/support/effort.h"
 
 namespace vernier {
 namespace {
@@ -46,12 +47,12 @@ TEST(OwnAccelerators, AnswerAlikeToTheBit) {
       soup.add_instance(mesh, random_placement(dice, stretch, dice.in_cube(3)));
     }
     for (const auto build : {build_bvh, build_octree})
-      expect_brute_force_answers(*build(soup.geometry()), soup, 2, 1000);
+      expect_brute_force_answers(*build(soup.geometry()), soup, 2, 1000 / test::thinning);
   }
 }
 
 /// Enough triangles to hurt a bad builder, few enough for brute force.
-uint32_t test_size(const Stress& stress) { return std::min(stress.triangles, 20'000u); }
+uint32_t test_size(const Stress& stress) { return std::min(stress.triangles, 20'000u / test::thinning); }
 
 class StructureStress : public testing::TestWithParam<Stress> {};
 

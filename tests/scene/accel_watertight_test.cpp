@@ -2,6 +2,7 @@
 #include "scene/accel/proof/agreement.h"
 #include "scene/accel/proof/leaks.h"
 #include "tests/scene/accel_support.h"
+#include "tests/support/effort.h"
 
 // Rates of 1e-5 are seen with 95 % confidence (rule of three); `vernier bench stability` runs the same with
 // 10^7 rays.
@@ -12,7 +13,7 @@ namespace {
 using namespace proof;
 using test::EveryAccelerator;
 
-constexpr uint64_t rays = 300'000;
+constexpr uint64_t rays = 300'000 / test::thinning;
 constexpr float distances[] = {1, 100, 1e4f};
 
 class Watertightness : public EveryAccelerator {};

@@ -2,6 +2,7 @@
 
 #include "core/base/names.h"
 #include "core/base/parallel.h"
+#include "tests/support/effort.h"
 
 namespace vernier::test {
 
@@ -160,7 +161,7 @@ Ray ray_through(const Vec3f& from, const Vec3f& to) {
 
 ::testing::AssertionResult sees(const Scene& scene, const Integrator& integrator, const Ray& ray,
                                 double expected, double resolution) {
-  const double bias = resolution * std::abs(expected);
+  const double bias = coarsening * resolution * std::abs(expected);
   Samples measured;
   for (int samples = 1 << 9; samples <= 1 << 18; samples *= 2) {
     measured = measure(scene, integrator, ray, samples);

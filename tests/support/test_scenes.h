@@ -62,6 +62,7 @@ Ray ray_through(const Vec3f& from, const Vec3f& to);
 
 /// Whether the radiance along `ray` is `expected` within `resolution` times it. Samples are doubled until a
 /// bias of that size would be found nine times in ten; it is a failure when 2^18 a set do not suffice.
+/// A sanitized build resolves less (tests/support/effort.h).
 ::testing::AssertionResult sees(const Scene& scene, const Integrator& integrator, const Ray& ray,
                                 double expected, double resolution);
 

@@ -1,0 +1,19 @@
+#pragma once
+
+// How hard the long statistical tests try. The sanitized build looks for bad memory accesses and undefined
+// behaviour, which show in any sample, and runs many times slower: there those tests draw fewer samples and
+// ask for a coarser agreement, as much as that many samples resolve.
+
+namespace vernier::test {
+
+#ifdef VERNIER_SANITIZED
+constexpr int thinning = 16;
+constexpr double coarsening = 4;
+#else
+/// Divides the number of samples of the longest tests.
+constexpr int thinning = 1;
+/// Multiplies the smallest error they find: the square root of the thinning.
+constexpr double coarsening = 1;
+#endif
+
+}  // namespace vernier::test
