@@ -224,7 +224,7 @@ class Renderer {
     if (options_.target_error > 0 && !result().convergence.empty()) {
       // Squared error falls as one over the samples.
       const auto& last = result().convergence.back();
-      const double needed = last.samples_per_pixel * square(last.error.rel_rmse / options_.target_error);
+      const double needed = last.samples_per_pixel * square(excess(last.error, options_.target_error));
       p.fraction = std::max(p.fraction, p.samples_per_pixel / needed);
     }
     p.fraction = std::min(1.0, p.fraction);
