@@ -3,12 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 namespace vernier::apps {
 namespace {
+
+/// The layer `half` of a picture.
+struct Halves {
+  std::array<Image, 2> color, spread;
+};
 
 /// Whether `picture` is the mean of the two halves, but for rounding.
 bool is_mean_of(const Image& picture, const Image& first, const Image& second) {
@@ -20,12 +25,41 @@ bool is_mean_of(const Image& picture, const Image& first, const Image& second) {
   return true;
 }
 
-/// The same guides for one half, whose error is larger than that of the mean of two.
-NoisyImage half_of(const NoisyImage& picture, const Image& color) {
+/// Empty without that layer, and when the picture has changed since.
+std::optional<Halves> find_halves(const LayeredImage& picture) {
+  Halves halves;
+  for (size_t i = 0; i < 2; ++i) {
+    const std::string name = i == 0 ? "half1" : "half2";
+    auto color = picture.layer(name), spread = picture.layer(name + "Spread");
+    if (!color || !spread) return std::nullopt;
+    halves.color[i] = std::move(*color);
+    halves.spread[i] = std::move(*spread);
+  }
+  if (!is_mean_of(picture.rgb(), halves.color[0], halves.color[1])) return std::nullopt;
+  return halves;
+}
+
+/// What stratification leaves of the standard errors that independent samples would have: one factor for the
+/// picture, by how far its halves are apart.
+float left_by_stratification(const Halves& halves) {
+  double apart = 0, spread = 0;
+  for (size_t i = 0; i < halves.color[0].values.size(); ++i) {
+    const double a = halves.color[0].values[i], b = halves.color[1].values[i];
+    const double weight = 1 / ((a + b) * (a + b) / 4 + 0.01);
+    apart += weight * (a - b) * (a - b);
+    for (const Image& half : halves.spread) spread += weight * double(half.values[i]) * half.values[i];
+  }
+  return spread > 0 ? float(std::min(1.0, std::sqrt(apart / spread))) : 1;
+}
+
+/// A half with the picture's guides. Its error is known from itself alone: a guide that knew the other half,
+/// as the picture's error layer does, would make the filtered half depend on what it is compared with.
+NoisyImage half_of(const NoisyImage& picture, const Halves& halves, size_t which) {
   NoisyImage half = picture;
-  half.color = color;
-  if (half.error)
-    for (float& value : half.error->values) value *= std::numbers::sqrt2_v<float>;
+  half.color = halves.color[which];
+  half.error = halves.spread[which];
+  const float factor = left_by_stratification(halves);
+  for (float& value : half.error->values) value *= factor;
   return half;
 }
 
@@ -33,11 +67,10 @@ NoisyImage half_of(const NoisyImage& picture, const Image& color) {
 
 Denoised denoise(const LayeredImage& picture, const Denoiser& denoiser) {
   const NoisyImage noisy{picture.rgb(), picture.layer("error"), picture.layer("albedo"), picture.layer("N")};
-  const auto first = picture.layer("half1"), second = picture.layer("half2");
-  if (!first || !second || !is_mean_of(noisy.color, *first, *second))
-    return {denoiser.filter(noisy), std::nullopt, std::nullopt};
-  DenoisedHalves halves = denoise_halves(denoiser, half_of(noisy, *first), half_of(noisy, *second));
-  return {std::move(halves.picture), halves.error, std::move(halves.pixel_error)};
+  const auto halves = find_halves(picture);
+  if (!halves) return {denoiser.filter(noisy), std::nullopt, std::nullopt};
+  DenoisedHalves denoised = denoise_halves(denoiser, half_of(noisy, *halves, 0), half_of(noisy, *halves, 1));
+  return {std::move(denoised.picture), denoised.error, std::move(denoised.pixel_error)};
 }
 
 void put_into(LayeredImage& picture, const Denoised& denoised) {

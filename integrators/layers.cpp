@@ -20,6 +20,8 @@ void put(const V& v, float* out) {
   for (int c = 0; c < 3; ++c) out[c] = float(v[c]);
 }
 
+Vec3d square_root(const Vec3d& v) { return {std::sqrt(v.x), std::sqrt(v.y), std::sqrt(v.z)}; }
+
 constexpr Layer table[] = {
     {"error",
      "standard error of the pixel; unreliable is 1 where it is not to be trusted, else 0",
@@ -37,11 +39,15 @@ constexpr Layer table[] = {
      LayerNeed::film,
      [](P p, float* out) { put(p.film.sample_variance(p.x, p.y), out); }},
     {"half",
-     "the two independent pictures whose mean the picture is",
-     {"half1.R", "half1.G", "half1.B", "half2.R", "half2.G", "half2.B"},
+     "the two independent pictures whose mean the picture is, and the spread of each",
+     {"half1.R", "half1.G", "half1.B", "half2.R", "half2.G", "half2.B", "half1Spread.R", "half1Spread.G",
+      "half1Spread.B", "half2Spread.R", "half2Spread.G", "half2Spread.B"},
      LayerNeed::film,
      [](P p, float* out) {
-       put(p.film.half_mean(p.x, p.y, 0), out), put(p.film.half_mean(p.x, p.y, 1), out + 3);
+       for (int half = 0; half < Film::halves; ++half, out += 3) {
+         put(p.film.half_mean(p.x, p.y, half), out);
+         put(square_root(p.film.half_mean_variance(p.x, p.y, half)), out + 3 * Film::halves);
+       }
      }},
     {"albedo",
      "fraction of light that the first surface scatters toward the camera, mean over samples",

@@ -29,7 +29,7 @@ struct PixelFacts {
 struct Layer {
   std::string_view name;
   std::string_view description;
-  std::array<std::string_view, 6> channels;  ///< names in the file; empty ones at the end count for nothing
+  std::array<std::string_view, 12> channels;  ///< names in the file; empty ones at the end count for nothing
   LayerNeed need;
   void (*write)(const PixelFacts& pixel, float* channels);
 
