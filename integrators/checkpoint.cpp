@@ -95,6 +95,7 @@ class Reader {
 
   uintmax_t left() const { return left_; }
   void read(std::span<std::byte> bytes) {
+    if (bytes.empty()) return;  // an empty array need not be anywhere, and fread wants a place
     if (bytes.size() > left_ || std::fread(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size())
       damaged("it is cut short");
     left_ -= bytes.size();

@@ -31,8 +31,9 @@ void write_and_rename(const std::string& path, std::span<const std::span<const s
   std::unique_ptr<std::FILE, CloseFile> file(std::fopen(temporary.c_str(), "wb"));
   if (!file) refuse(path, std::strerror(errno));
   bool written = true;
-  for (const auto& part : parts)
-    written = written && std::fwrite(part.data(), 1, part.size(), file.get()) == part.size();
+  for (const auto& part : parts)  // of which empty ones need not be anywhere, and fwrite wants a place
+    written =
+        written && (part.empty() || std::fwrite(part.data(), 1, part.size(), file.get()) == part.size());
   if (to_disk) written = written && std::fflush(file.get()) == 0 && ::fdatasync(::fileno(file.get())) == 0;
   int reason = errno;
   const bool closed = std::fclose(file.release()) == 0;
