@@ -25,6 +25,7 @@ const auto& find_by_name(const Table& table, std::string_view kind, std::string_
   for (const auto& entry : table)
     if (entry.name == name) return entry;
   std::vector<std::string> names;
+  names.reserve(std::size(table));
   for (const auto& entry : table) names.emplace_back(entry.name);
   throw_unknown_name(kind, name, names);
 }

@@ -129,7 +129,8 @@ struct Split {
 
 Split best_split(const Bins& bins, unsigned bin_count, unsigned leaf_size) {
   const auto cost = [&](const Bin& side) {
-    return side.box.half_area() * static_cast<float>((side.count + leaf_size - 1) / leaf_size);
+    const size_t leaves = (side.count + leaf_size - 1) / leaf_size;
+    return side.box.half_area() * static_cast<float>(leaves);
   };
   Split best;
   for (int axis = 0; axis < 3; ++axis) {

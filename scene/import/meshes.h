@@ -18,6 +18,7 @@ struct MeshUse {
   int skin = -1;                ///< the mesh is then in world space
   std::vector<double> weights;  ///< of morph targets
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 reads what the compiler writes
   auto operator<=>(const MeshUse&) const = default;
 };
 

@@ -99,6 +99,7 @@ void add_blob(Soup& soup, Dice& dice, unsigned levels, float radius, const Vec3f
     triangles = std::move(finer);
   }
   std::vector<Vec3f> positions;
+  positions.reserve(directions.size());
   for (const Vec3f& direction : directions)
     positions.push_back(center + direction * (radius * dice.uniform(.7f, 1)));
   for (Triangle& triangle : triangles) rotate_corners(triangle, dice);
