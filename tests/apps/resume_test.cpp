@@ -87,9 +87,9 @@ TEST_F(ResumeCommand, AnotherRenderIsRefused) {
     EXPECT_EQ(result.exit_code, 3);
     EXPECT_EQ(result.err, "error: " + ckpt_ + ": is of another render: " + expected + "\n");
   }
-  const ProcessResult other =
-      run_vernier({"render", VERNIER_SOURCE_DIR "/tests/scenes/layer_spheres.gltf", "--size", "32x32", "-o",
-                   folder_.file("b.exr"), "--resume", ckpt_, "-q"});
+  const std::string spheres = VERNIER_SOURCE_DIR "/tests/scenes/layer_spheres.gltf";
+  const ProcessResult other = run_vernier(
+      {"render", spheres, "--size", "32x32", "-o", folder_.file("b.exr"), "--resume", ckpt_, "-q"});
   EXPECT_EQ(other.exit_code, 3);
   EXPECT_THAT(other.err, HasSubstr("scene was "));
   EXPECT_THAT(other.err, HasSubstr("size was 64x64, is 32x32"));

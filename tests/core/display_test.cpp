@@ -31,8 +31,9 @@ Image grey_image(const std::vector<float>& values) {
 }
 
 std::vector<float> ramp(float from, float to, int count) {
-  std::vector<float> values;
-  for (int i = 0; i < count; ++i) values.push_back(from + (to - from) * float(i) / float(count - 1));
+  std::vector<float> values(static_cast<size_t>(count));
+  for (int i = 0; i < count; ++i)
+    values[static_cast<size_t>(i)] = from + (to - from) * float(i) / float(count - 1);
   return values;
 }
 
@@ -63,9 +64,7 @@ TEST_F(Display, BuiltInViewsWithTheDefaultFirst) {
 }
 
 TEST_F(Display, RawIsTheValueItself) {
-  std::vector<float> values;
-  for (int i = 0; i < 256; ++i) values.push_back(float(i) / 255);
-  const Image8 shown = to_display(grey_image(values), {.view = "raw"});
+  const Image8 shown = to_display(grey_image(ramp(0, 1, 256)), {.view = "raw"});
   for (int i = 0; i < 256; ++i)
     EXPECT_EQ(bytes_at(shown, i), (std::array<uint8_t, 3>{uint8_t(i), uint8_t(i), uint8_t(i)}));
 }
@@ -91,8 +90,8 @@ TEST_F(Display, StandardKeepsSaturatedColours) {
 }
 
 TEST_F(Display, EightBitSrgbSurvivesTheRoundTrip) {
-  std::vector<float> linear;
-  for (int i = 0; i < 256; ++i) linear.push_back(srgb_to_linear(float(i) / 255));
+  std::vector<float> linear = ramp(0, 1, 256);
+  for (float& value : linear) value = srgb_to_linear(value);
   const Image8 shown = to_display(grey_image(linear), {.view = "standard"});
   for (int i = 0; i < 256; ++i) EXPECT_EQ(shown.pixel(i, 0)[0], i);
 }

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "core/image/image_io.h"
@@ -46,7 +48,7 @@ TEST_P(References, AgreeInTheMeanOfEveryBlock) {
   const std::atomic<bool> stop = false;
   const Image ours = render(scene, camera, *path({}), options, stop).film.image();
   for (const std::string renderer : GetParam().renderers) {
-    const Image theirs = read_image(folder / "references" / (name + "." + renderer + ".exr"));
+    const Image theirs = read_image(folder / "references" / fmt::format("{}.{}.exr", name, renderer));
     ASSERT_EQ(theirs.width, size);
     ASSERT_EQ(theirs.height, size);
     EXPECT_NEAR(block_mean(ours, 0, 0, size) / block_mean(theirs, 0, 0, size), 1, 0.002) << renderer;

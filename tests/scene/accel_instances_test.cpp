@@ -61,15 +61,18 @@ TEST_P(Instances, KeepsInstancesThatLoseADimension) {
 TEST_P(Instances, TellsInstancesOfOneMeshApart) {
   Soup soup;
   const uint32_t mesh = soup.add_mesh({{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}});
-  for (int i = 0; i < 100; ++i) {
+  const auto at = [](uint32_t i, float z) {
+    const uint32_t column = i % 10, row = i / 10;
+    return Vec3f(float(column) * 3, float(row) * 3, z);
+  };
+  for (uint32_t i = 0; i < 100; ++i) {
     Transform to_world;
-    to_world.origin = {float(i % 10) * 3, float(i / 10) * 3, float(i)};
+    to_world.origin = at(i, float(i));
     soup.add_instance(mesh, to_world);
   }
   const auto accelerator = build(soup);
   for (uint32_t i = 0; i < 100; ++i) {
-    const Vec3f above{float(i % 10) * 3, float(i / 10) * 3, 200};
-    const auto hit = accelerator->closest(make_ray(above, {0, 0, -1}));
+    const auto hit = accelerator->closest(make_ray(at(i, 200), {0, 0, -1}));
     ASSERT_TRUE(hit) << i;
     EXPECT_EQ(hit->instance, i);
     EXPECT_FLOAT_EQ(hit->t, 200 - float(i));

@@ -157,8 +157,8 @@ TEST(Lights, NearAndTexturedLampsFitTheirDensity) {
       const auto corners = scene.geometry().triangle(1, primitive);
       const float area = length(cross(corners[1] - corners[0], corners[2] - corners[0])) / 2;
       for (int i = 0; i < cells * sub * cells * sub; ++i) {
-        const Vec2f u((float(i % (cells * sub)) + 0.5f) / (cells * sub),
-                      (float(i / (cells * sub)) + 0.5f) / (cells * sub));
+        const int column = i % (cells * sub), row = i / (cells * sub);
+        const Vec2f u((float(column) + 0.5f) / (cells * sub), (float(row) + 0.5f) / (cells * sub));
         SurfacePoint on = scene.geometry().surface_point(1, primitive, sample_triangle(u));
         const Vec3f to = on.position - from->position;
         const Vec3f wi = normalize(to);
@@ -209,8 +209,9 @@ TEST(Lights, PdfIntegratesToTheProbabilityOfBeingMet) {
       double below = 0, above = 0, sampled = 0;
       constexpr int grid = int(1200 / test::coarsening), samples = 200'000 / test::thinning;
       for (int i = 0; i < grid * grid; ++i) {
-        const float z = (float(i % grid) + random.next1()) / grid,
-                    phi = 2 * pi * (float(i / grid) + random.next1()) / grid;
+        const int column = i % grid, row = i / grid;
+        const float z = (float(column) + random.next1()) / grid,
+                    phi = 2 * pi * (float(row) + random.next1()) / grid;
         const float r = safe_sqrt(1 - z * z);
         const Vec3f up(r * std::cos(phi), z, r * std::sin(phi)), down(up.x, -z, up.z);
         const Ray ray = from.spawn(up);

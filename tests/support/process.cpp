@@ -76,6 +76,7 @@ std::vector<std::string> ProcessResult::err_lines() const {
 ProcessResult run_process(const std::vector<std::string>& arguments, const SendSignal& signal) {
   std::vector<std::string> words = arguments;
   std::vector<char*> raw;
+  raw.reserve(words.size() + 1);
   for (auto& word : words) raw.push_back(word.data());
   raw.push_back(nullptr);
   Pipe out, err;
