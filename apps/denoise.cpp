@@ -68,10 +68,7 @@ void register_denoise(Program& program) {
   command->add_option("--filter", flags->filter, "'help' lists them")
       ->type_name("NAME")
       ->capture_default_str();
-  command->add_option("-t,--threads,--nthreads", flags->threads, "0: all of the machine's")
-      ->check(whole_number(0, 4096))
-      ->type_name("N")
-      ->capture_default_str();
+  add_threads_flag(*command, flags->threads);
   command->add_flag("-q,--quiet", flags->quiet, "say nothing but errors");
   command->footer(
       "Example: vernier render scene.glb -o a.exr --aov error,half,albedo,normal --spp 16\n"

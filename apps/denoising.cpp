@@ -52,14 +52,14 @@ float left_by_stratification(const Halves& halves) {
   return spread > 0 ? float(std::min(1.0, std::sqrt(apart / spread))) : 1;
 }
 
-/// A half with the picture's guides. Its error is known from itself alone: a guide that knew the other half,
-/// as the picture's error layer does, would make the filtered half depend on what it is compared with.
-NoisyImage half_of(const NoisyImage& picture, const Halves& halves, size_t which) {
+/// A half with the picture's guides; `left` is what stratification leaves. Its error is known from itself
+/// alone: a guide that knew the other half, as the picture's error layer does, would make the filtered half
+/// depend on what it is compared with.
+NoisyImage half_of(const NoisyImage& picture, const Halves& halves, size_t which, float left) {
   NoisyImage half = picture;
   half.color = halves.color[which];
   half.error = halves.spread[which];
-  const float factor = left_by_stratification(halves);
-  for (float& value : half.error->values) value *= factor;
+  for (float& value : half.error->values) value *= left;
   return half;
 }
 
@@ -69,7 +69,9 @@ Denoised denoise(const LayeredImage& picture, const Denoiser& denoiser) {
   const NoisyImage noisy{picture.rgb(), picture.layer("error"), picture.layer("albedo"), picture.layer("N")};
   const auto halves = find_halves(picture);
   if (!halves) return {denoiser.filter(noisy), std::nullopt, std::nullopt};
-  DenoisedHalves denoised = denoise_halves(denoiser, half_of(noisy, *halves, 0), half_of(noisy, *halves, 1));
+  const float left = left_by_stratification(*halves);
+  DenoisedHalves denoised =
+      denoise_halves(denoiser, half_of(noisy, *halves, 0, left), half_of(noisy, *halves, 1, left));
   return {std::move(denoised.picture), denoised.error, std::move(denoised.pixel_error)};
 }
 

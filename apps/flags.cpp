@@ -24,6 +24,13 @@ CLI::Validator whole_number(int least, int most) {
   return {check, ""};
 }
 
+void add_threads_flag(CLI::App& command, unsigned& threads) {
+  command.add_option("-t,--threads,--nthreads", threads, "0: all of the machine's")
+      ->check(whole_number(0, 4096))
+      ->type_name("N")
+      ->capture_default_str();
+}
+
 void add_scene_flags(CLI::App& command, std::string& scene, ImportOptions& options) {
   command.add_option("SCENE", scene, "glTF 2.0 scene (.gltf, .glb)")->type_name("");
   const std::string group = command.option_defaults()->get_group();

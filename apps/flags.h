@@ -33,6 +33,9 @@ CLI::Validator parsed_by(Parse parse) {
 /// SCENE, and the flags that say how it is read.
 void add_scene_flags(CLI::App& command, std::string& scene, ImportOptions& options);
 
+/// --threads, for ThreadLimit.
+void add_threads_flag(CLI::App& command, unsigned& threads);
+
 /// Throws Error(usage) when no scene was given to `command`.
 void require_scene(const std::string& scene, const std::string& command);
 

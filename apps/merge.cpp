@@ -111,10 +111,7 @@ void register_merge(Program& program) {
       ->add_option("--aov,--layers", flags->layers,
                    "layers beside the colour: error, samples, variance, half")
       ->type_name("LIST");
-  command->add_option("-t,--threads,--nthreads", flags->threads, "0: all of the machine's")
-      ->check(whole_number(0, 4096))
-      ->type_name("N")
-      ->capture_default_str();
+  add_threads_flag(*command, flags->threads);
   command->add_flag("-q,--quiet", flags->quiet, "say nothing but errors");
   command->footer(
       "Example: vernier render scene.glb -o a.exr --seed 1 --time 1h --checkpoint a.ckpt   (here)\n"

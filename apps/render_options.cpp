@@ -67,10 +67,7 @@ void add_quality_flags(CLI::App& command, RenderFlags& flags) {
       ->check(parsed_by(parse_seed))
       ->type_name("N")
       ->capture_default_str();
-  command.add_option("-t,--threads,--nthreads", flags.threads, "0: all of the machine's")
-      ->check(whole_number(0, 4096))
-      ->type_name("N")
-      ->capture_default_str();
+  add_threads_flag(command, flags.threads);
 }
 
 void add_integrator_flags(CLI::App& command, RenderFlags& flags) {

@@ -40,6 +40,7 @@ TEST_P(SpawnedRays, SeldomHitsACopyOfWhatARayLeaves) {
     const Count hits = self_hits(GetParam().build, c, rays, 1);
     EXPECT_LE(hits.events, most) << "scale " << c.scale << " offset " << c.offset << " instanced "
                                  << c.instanced;
+    EXPECT_GT(hits.trials, rays / 10);
   }
 }
 
