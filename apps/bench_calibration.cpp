@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "apps/bench.h"
 #include "apps/calibration.h"
 #include "apps/choose_camera.h"
 #include "apps/flags.h"
+#include "core/base/error.h"
 #include "core/base/names.h"
 #include "core/base/text_file.h"
 #include "scene/camera.h"
@@ -19,7 +21,7 @@ using Json = nlohmann::ordered_json;
 struct CalibrationFlags {
   RenderFlags render;  ///< scene, surroundings, size, how the picture is made
   int spp = 64, seeds = 20, reference_spp = 4096;
-  std::string json;
+  std::string reference, json;
 };
 
 std::string figure(const Json& value) {
@@ -38,19 +40,35 @@ void print_report(const Json& report) {
   fmt::print("predicted over actual RMSE, by brightness, dark to bright ");
   for (const Json& decile : report["deciles"]) fmt::print(" {}", figure(decile["predicted_over_actual"]));
   const Json& image = report["image"];
-  fmt::print("\nimage: estimated {:.3g} %, true {:.3g} %, ratio {} ({} to {}) over {} runs, of means {}\n",
-             100 * image["estimated"].get<double>(), 100 * image["true"].get<double>(),
-             figure(image["ratio"]["median"]), figure(image["ratio"]["low"]), figure(image["ratio"]["high"]),
-             report["runs"].get<size_t>(), figure(image["ratio_of_means"]));
+  fmt::print(
+      "\nimage: estimated {:.3g} %, true {:.3g} %, ratio {} ({} to {}) over {} runs of {:.4g} spp, of means "
+      "{}\n",
+      100 * image["estimated"].get<double>(), 100 * image["true"].get<double>(),
+      figure(image["ratio"]["median"]), figure(image["ratio"]["low"]), figure(image["ratio"]["high"]),
+      report["runs"].get<size_t>(), report["samples_per_pixel"].get<double>(),
+      figure(image["ratio_of_means"]));
   fmt::print("95 % interval holds the truth in {:.0f} % of them; true above 1.1 x estimated in {}\n",
              100 * image["interval_covers"].get<double>(), image["true_above_1.1_estimated"].get<size_t>());
   if (const Json& above = image["true_above_1.1_asked"]; !above.is_null())
     fmt::print("true above 1.1 x asked in {}\n", above.get<size_t>());
 }
 
+/// Without an error layer it could not be told whose errors are seen.
+Reference read_reference_with_error(const std::string& file) {
+  Reference reference = read_reference(file);
+  if (reference.standard_error.values.empty() || reference.rel_mse <= 0)
+    throw Error(ErrorKind::input,
+                fmt::format("{}: has no layer 'error' or no vernier:relRmse; render the reference with "
+                            "vernier render --adaptive off --aov error",
+                            file));
+  return reference;
+}
+
 ExitCode run_bench_calibration(const CalibrationFlags& flags, const Program& program) {
   require_scene(flags.render.scene, "bench calibration");
   if (!flags.json.empty()) check_writable_text_file(flags.json);
+  std::optional<Reference> given;
+  if (!flags.reference.empty()) given = read_reference_with_error(flags.reference);
   NoticeLog log(false);
   SceneDescription description = import_scene(flags.render.scene, flags.render.import);
   surround(description, read_environment(flags.render));
@@ -59,7 +77,7 @@ ExitCode run_bench_calibration(const CalibrationFlags& flags, const Program& pro
   const Scene scene(std::move(description), {});
   log.add(scene.notices());
   const CameraDescription view = chosen ? *chosen : fit_camera(scene.bounds(), {}, log);
-  RenderOptions options = bench_options(flags.render, view, nullptr);
+  RenderOptions options = bench_options(flags.render, view, given ? &given->picture : nullptr);
   options.spp = flags.spp;
   if (!flags.render.error.empty()) {
     options.spp = 0;
@@ -67,11 +85,13 @@ ExitCode run_bench_calibration(const CalibrationFlags& flags, const Program& pro
   }
   const Camera camera(view, options.width, options.height);
   const int max_depth = flags.render.integrator_options.max_depth;
-  const Reference reference = render_reference(scene, camera, options, flags.reference_spp, max_depth);
+  const Reference reference =
+      given ? std::move(*given) : render_reference(scene, camera, options, flags.reference_spp, max_depth);
   const auto integrator =
       find_by_name(integrators(), "integrator", "path").make(flags.render.integrator_options);
   Calibration calibration(reference, options.target_error);
   for (int seed = 1; seed <= flags.seeds; ++seed) {
+    fmt::print(stderr, "seed {} of {}\n", seed, flags.seeds);
     options.seed = uint64_t(seed);
     calibration.add(render(scene, camera, *integrator, options, never_stop));
   }
@@ -105,7 +125,9 @@ void register_bench_calibration(CLI::App& bench, Program& program) {
       ->check(whole_number(1, 1'000'000))
       ->type_name("K")
       ->capture_default_str();
-  command->add_option("--reference-spp", flags->reference_spp, "samples a pixel of the reference")
+  command->add_option("--reference", flags->reference, "of other seeds, evenly sampled, with the layer error")
+      ->type_name("FILE");
+  command->add_option("--reference-spp", flags->reference_spp, "else: samples a pixel of one rendered first")
       ->check(whole_number(2, 1 << 30))
       ->type_name("N")
       ->capture_default_str();

@@ -24,7 +24,8 @@ const std::atomic<bool> never_stop{false};
 
 Reference read_reference(const std::string& file) {
   const LayeredImage layers = read_layers(file);
-  Reference reference{layers.rgb(), 0, {}, {{"file", file}, {"rel_rmse", nullptr}}};
+  Reference reference{
+      layers.rgb(), 0, layers.layer("error").value_or(Image()), {{"file", file}, {"rel_rmse", nullptr}}};
   const auto error = layers.metadata.find("vernier:relRmse");
   double value = 0;
   if (error != layers.metadata.end()) {

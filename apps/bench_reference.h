@@ -14,7 +14,7 @@ namespace vernier::apps {
 struct Reference {
   Image picture;
   double rel_mse = 0;           ///< its own, as far as known
-  Image standard_error;         ///< three channels, of a rendered one; else empty
+  Image standard_error;         ///< three channels; empty where a file has no layer `error`
   nlohmann::ordered_json json;  ///< docs/bench.md, `reference`
 };
 

@@ -49,8 +49,9 @@ void Calibration::add(const RenderResult& result) {
                 reference_.standard_error.values[i], decile_of_pixel_[pixel]);
   }
   const double truth = difference(picture, reference_.picture).rel_mse - reference_.rel_mse;
-  images_.push_back(
-      {result.error.rel_rmse, result.error.low, result.error.high, std::sqrt(std::max(0.0, truth))});
+  images_.push_back({result.error.rel_rmse, result.error.low, result.error.high,
+                     std::sqrt(std::max(0.0, truth)),
+                     double(result.samples) / double(decile_of_pixel_.size())});
 }
 
 void Calibration::add_value(double difference, double error, double reference_error, size_t decile) {
@@ -73,13 +74,14 @@ Json Calibration::json() const {
   for (const Decile& sums : deciles_)
     deciles.push_back({{"values", sums.values},
                        {"predicted_over_actual", ratio(std::sqrt(sums.predicted), std::sqrt(sums.actual))}});
-  std::vector<double> estimated, truths, ratios;
+  std::vector<double> estimated, truths, ratios, samples;
   size_t inside = 0, above_estimate = 0, above_asked = 0;
   double estimated_squares = 0, true_squares = 0;
   for (const Image& image : images_) {
     estimated.push_back(image.estimated);
     truths.push_back(image.truth);
     ratios.push_back(image.estimated / image.truth);
+    samples.push_back(image.samples_per_pixel);
     estimated_squares += square(image.estimated);
     true_squares += square(image.truth);
     inside += image.low <= image.truth && image.truth <= image.high;
@@ -88,6 +90,7 @@ Json Calibration::json() const {
   }
   const auto [lowest, highest] = std::minmax_element(ratios.begin(), ratios.end());
   return {{"runs", images_.size()},
+          {"samples_per_pixel", median(samples)},
           {"flagged", ratio(double(flagged_), double(pixels_))},
           {"coverage", coverage},
           {"deciles", deciles},

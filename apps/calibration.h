@@ -35,7 +35,7 @@ class Calibration {
     size_t values = 0;
   };
   struct Image {
-    double estimated, low, high, truth;
+    double estimated, low, high, truth, samples_per_pixel;
   };
   void add_value(double difference, double error, double reference_error, size_t decile);
 

@@ -57,6 +57,35 @@ TEST(BenchStability, WritesTheTableAsJsonAndMarkdown) {
   EXPECT_THAT(test::read_file(table), HasSubstr("| case | figure | rays | bvh | embree-fast |"));
 }
 
+TEST(BenchCalibration, ComparesReportedErrorsWithThoseAgainstAReference) {
+  test::TemporaryFolder folder;
+  const std::string reference = folder.file("reference.exr"), file = folder.file("c.json");
+  const auto rendered =
+      test::run_vernier({"render", cornell_box, "--size", "16x16", "--spp", "1024", "--seed", "1000001",
+                         "--adaptive", "off", "--aov", "error", "-o", reference});
+  ASSERT_EQ(rendered.exit_code, done) << rendered.err;
+  const auto result = test::run_vernier({"bench", "calibration", cornell_box, "--reference", reference,
+                                         "--error", "10%", "--seeds", "4", "--json", file});
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  const auto report = json::parse(test::read_file(file));
+  EXPECT_EQ(report["runs"], 4);
+  EXPECT_EQ(report["width"], 16);
+  EXPECT_GE(report["samples_per_pixel"], 16);
+  EXPECT_EQ(report["coverage"].size(), 4u);
+  EXPECT_GT(report["coverage"][2]["measured"], 0.8);
+  EXPECT_EQ(report["image"]["true_above_1.1_asked"], 0);
+  EXPECT_LT(report["image"]["estimated"], 0.10);
+  EXPECT_GT(report["image"]["true"], 0.03);
+
+  const auto plain =
+      test::run_vernier({"render", cornell_box, "--size", "16x16", "--spp", "4", "-o", reference});
+  ASSERT_EQ(plain.exit_code, done) << plain.err;
+  const auto refused = test::run_vernier({"bench", "calibration", cornell_box, "--reference", reference});
+  EXPECT_EQ(refused.exit_code, input);
+  ASSERT_EQ(refused.err_lines().size(), 1u) << refused.err;
+  EXPECT_THAT(refused.err, HasSubstr("--aov error"));
+}
+
 TEST(Bench, MisuseIsOneLineAndNothingIsWritten) {
   test::TemporaryFolder folder;
   const auto expect_error = [](const std::vector<std::string>& arguments, int code, const std::string& part) {
