@@ -4,6 +4,7 @@
 
 #include "core/base/parallel.h"
 #include "scene/camera.h"
+#include "tests/support/effort.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_scenes.h"
 
@@ -113,20 +114,15 @@ class Fireflies : public Integrator {
   float share_;
 };
 
-// Adaptive sampling does not change what the image converges to, though whether a pixel gets more samples
-// depends on fireflies that were found. Detects a bias of 0.23 % (the test prints it); plans made from all
-// samples of the other half, not only from its guide, are off by 0.25 %.
-TEST(Render, AdaptiveSamplingIsUnbiased) {
+/// The mean over all pictures' pixels, each picture of the same Fireflies by another seed, is 1. Prints the
+/// bias that it would detect.
+bool is_mean_right(const Fireflies& integrator, RenderOptions options, uint64_t pictures) {
   const Scene nothing = SceneBuilder().build();
-  const Fireflies integrator(0.05f);
-  RenderOptions options;
-  options.width = options.height = 16;
-  options.spp = 96;
   const Camera camera(camera_description(), options.width, options.height);
   const std::atomic<bool> stop = false;
-  EXPECT_TRUE(confirmed(1e-3, 600, [&](uint64_t seed, uint64_t pictures) {
+  return confirmed(1e-3, pictures, [&](uint64_t seed, uint64_t count) {
     Samples means;
-    for (uint64_t i = 0; i < pictures; ++i) {
+    for (uint64_t i = 0; i < count; ++i) {
       options.seed = seed * 100'000 + i;
       const Image image = render(nothing, camera, integrator, options, stop).film.image();
       double sum = 0;
@@ -136,7 +132,27 @@ TEST(Render, AdaptiveSamplingIsUnbiased) {
     fmt::print("mean {:.5f}, detectable bias {:.2f} %\n", means.mean(),
                100 * detectable_bias(means.standard_error(), 1e-3));
     return mean_p_value(means, 1);
-  }));
+  });
+}
+
+// Adaptive sampling does not change what the image converges to, though whether a pixel gets more samples
+// depends on fireflies that were found. Detects a bias of 0.13 % (the test prints it); plans made from all
+// samples of the other half, not only from its guide, are off by 0.25 %.
+TEST(Render, AdaptiveSamplingIsUnbiased) {
+  RenderOptions options;
+  options.width = options.height = 16;
+  options.spp = 96;
+  EXPECT_TRUE(is_mean_right(Fireflies(0.05f), options, 2000 / thinning));
+}
+
+// Nor does stopping at an error: a render ends when its estimate is low, which may not mean that its pixels
+// are. Detects a bias of 0.1 %.
+TEST(Render, StoppingAtAnErrorIsUnbiased) {
+  RenderOptions options;
+  options.width = options.height = 16;
+  options.spp = 0;
+  options.target_error = 0.1;
+  EXPECT_TRUE(is_mean_right(Fireflies(0.05f), options, 1000 / thinning));
 }
 
 struct Stopping {
