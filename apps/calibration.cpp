@@ -38,6 +38,7 @@ Calibration::Calibration(const Reference& reference, double asked)
 void Calibration::add(const RenderResult& result) {
   const vernier::Image picture = result.film.image();
   const ErrorLayers layers = error_layers(result.film);
+  Deciles& deciles = deciles_.emplace_back();
   for (size_t pixel = 0; pixel < decile_of_pixel_.size(); ++pixel) {
     ++pixels_;
     if (layers.unreliable.values[pixel] > 0) {
@@ -45,8 +46,7 @@ void Calibration::add(const RenderResult& result) {
       continue;
     }
     for (size_t i = pixel * 3; i < pixel * 3 + 3; ++i)
-      add_value(double(picture.values[i]) - reference_.picture.values[i], layers.standard_error.values[i],
-                reference_.standard_error.values[i], decile_of_pixel_[pixel]);
+      add_value(i, picture.values[i], layers.standard_error.values[i], deciles[decile_of_pixel_[pixel]]);
   }
   const double truth = difference(picture, reference_.picture).rel_mse - reference_.rel_mse;
   images_.push_back({result.error.rel_rmse, result.error.low, result.error.high,
@@ -54,26 +54,48 @@ void Calibration::add(const RenderResult& result) {
                      double(result.samples) / double(decile_of_pixel_.size())});
 }
 
-void Calibration::add_value(double difference, double error, double reference_error, size_t decile) {
+void Calibration::add_value(size_t i, double value, double error, Decile& sums) {
+  const double reference = reference_.picture.values[i], difference = value - reference;
   // Both wander about the truth.
-  const double variance = error * error + reference_error * reference_error;
+  const double variance = square(error) + square(double(reference_.standard_error.values[i]));
   ++values_;
-  for (size_t i = 0; i < nominal_coverages.size(); ++i)
-    covered_[i] += difference * difference <= square(nominal_coverages[i].deviations) * variance;
-  Decile& sums = deciles_[decile];
-  sums.predicted += variance;
-  sums.actual += difference * difference;
+  for (size_t k = 0; k < nominal_coverages.size(); ++k)
+    covered_[k] += difference * difference <= square(nominal_coverages[k].deviations) * variance;
+  sums.predicted += relative_squared(variance, reference);
+  sums.actual += relative_squared(difference * difference, reference);
   ++sums.values;
 }
 
+/// Of the sums over all runs; the standard error from leaving out one run after the other (jackknife).
+Json Calibration::deciles_json() const {
+  Json json = Json::array();
+  for (size_t d = 0; d < std::tuple_size_v<Deciles>; ++d) {
+    Decile total;
+    for (const Deciles& run : deciles_) {
+      total.predicted += run[d].predicted;
+      total.actual += run[d].actual;
+      total.values += run[d].values;
+    }
+    const double n = double(deciles_.size());
+    double sum = 0, squares = 0;
+    for (const Deciles& run : deciles_) {
+      const double without = std::sqrt((total.predicted - run[d].predicted) / (total.actual - run[d].actual));
+      sum += without;
+      squares += square(without);
+    }
+    const double spread = std::sqrt(std::max(0.0, (squares - square(sum) / n) * (n - 1) / n));
+    json.push_back({{"values", total.values},
+                    {"predicted_over_actual", ratio(std::sqrt(total.predicted), std::sqrt(total.actual))},
+                    {"standard_error", n > 1 && std::isfinite(spread) ? Json(spread) : Json(nullptr)}});
+  }
+  return json;
+}
+
 Json Calibration::json() const {
-  Json coverage = Json::array(), deciles = Json::array();
+  Json coverage = Json::array();
   for (size_t i = 0; i < nominal_coverages.size(); ++i)
     coverage.push_back(
         {{"nominal", nominal_coverages[i].part}, {"measured", ratio(double(covered_[i]), double(values_))}});
-  for (const Decile& sums : deciles_)
-    deciles.push_back({{"values", sums.values},
-                       {"predicted_over_actual", ratio(std::sqrt(sums.predicted), std::sqrt(sums.actual))}});
   std::vector<double> estimated, truths, ratios, samples;
   size_t inside = 0, above_estimate = 0, above_asked = 0;
   double estimated_squares = 0, true_squares = 0;
@@ -93,7 +115,7 @@ Json Calibration::json() const {
           {"samples_per_pixel", median(samples)},
           {"flagged", ratio(double(flagged_), double(pixels_))},
           {"coverage", coverage},
-          {"deciles", deciles},
+          {"deciles", deciles_json()},
           {"image",
            {{"estimated", median(estimated)},
             {"true", median(truths)},

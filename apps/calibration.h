@@ -30,19 +30,23 @@ class Calibration {
   nlohmann::ordered_json json() const;
 
  private:
+  /// Sums of squared errors relative to r^2 + 0.01.
   struct Decile {
-    double predicted = 0, actual = 0;  ///< sums of squares
+    double predicted = 0, actual = 0;
     size_t values = 0;
   };
+  using Deciles = std::array<Decile, 10>;
   struct Image {
     double estimated, low, high, truth, samples_per_pixel;
   };
-  void add_value(double difference, double error, double reference_error, size_t decile);
+  /// Value `i` of the pictures, three a pixel, known with this `error`.
+  void add_value(size_t i, double value, double error, Decile& sums);
+  nlohmann::ordered_json deciles_json() const;
 
   const Reference& reference_;
   const double asked_;
   std::vector<uint8_t> decile_of_pixel_;  ///< by luminance of the reference
-  std::array<Decile, 10> deciles_{};
+  std::vector<Deciles> deciles_;          ///< of each run
   std::array<size_t, nominal_coverages.size()> covered_{};
   size_t values_ = 0, pixels_ = 0, flagged_ = 0;
   std::vector<Image> images_;

@@ -59,7 +59,7 @@ class SeedSums {
     for (size_t i = 0; i < sum_.size(); ++i) {
       const double mean = sum_[i] / count_, r = reference.values[i];
       const double variance = (squares_[i] / count_ - mean * mean) / (count_ - 1);  // of the mean
-      total += (square(mean - r) - variance) / (r * r + 0.01);
+      total += relative_squared(square(mean - r) - variance, r);
     }
     return total / double(sum_.size());
   }
@@ -212,7 +212,7 @@ Image relative_error_map(const Image& x, const Image& reference) {
     double sum = 0;
     for (size_t c = 0; c < 3; ++c) {
       const double r = reference.values[pixel * 3 + c];
-      sum += square(x.values[pixel * 3 + c] - r) / (r * r + 0.01);
+      sum += relative_squared(square(x.values[pixel * 3 + c] - r), r);
     }
     map.values[pixel] = float(std::sqrt(sum / 3));
   }

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "core/base/parallel.h"
+#include "core/image/metrics.h"
 #include "core/image/pixel_evidence.h"
 
 namespace vernier {
@@ -10,12 +11,10 @@ namespace {
 
 constexpr double doubtful_share = 1.0 / 3;  // of a pixel's light in one sample
 
-double relative(double squared, double value) { return squared / (value * value + relative_error_epsilon); }
-
-/// The mean of relative() over truths between `low` and `high`, each as likely as the others.
+/// The mean of relative_squared() over truths between `low` and `high`, each as likely as the others.
 double relative_to_range(double squared, double low, double high) {
   static const double root = std::sqrt(relative_error_epsilon);
-  if (high - low < 1e-3 * (low + root)) return relative(squared, low);
+  if (high - low < 1e-3 * (low + root)) return relative_squared(squared, low);
   return squared * (std::atan(high / root) - std::atan(low / root)) / (root * (high - low));
 }
 
@@ -67,9 +66,9 @@ void RowSums::add_pixel(const Film& film, const PixelEvidence& evidence, int x, 
   double small = 0, middle = 0, large = 0;
   for (int c = 0; c < 3; ++c) {
     const double low = evidence.likely.pixel(x, y)[c], high = doubtful ? std::max(low, shown[c]) : low;
-    small += relative(squared[c], high) / 3;
+    small += relative_squared(squared[c], high) / 3;
     middle += relative_to_range(squared[c], low, high) / 3;
-    large += relative(squared[c], low) / 3;
+    large += relative_squared(squared[c], low) / 3;
   }
   least.add(small);
   likely.add(middle);

@@ -1,5 +1,6 @@
 #include "core/base/parallel.h"
 #include "core/image/error_estimate.h"
+#include "core/image/metrics.h"
 #include "core/image/pixel_evidence.h"
 
 namespace vernier {

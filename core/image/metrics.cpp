@@ -10,8 +10,6 @@
 namespace vernier {
 namespace {
 
-constexpr double rel_mse_epsilon = 0.01;
-
 // Sums over one row, so that the total does not depend on the number of threads.
 struct RowSums {
   double squares = 0, relative = 0, absolute = 0;
@@ -32,7 +30,7 @@ RowSums sum_row(const Image& x, const Image& reference, int y) {
       if (bad) continue;
       const double error = std::abs(a - r);
       sums.squares += error * error;
-      sums.relative += error * error / (r * r + rel_mse_epsilon);
+      sums.relative += relative_squared(error * error, r);
       sums.absolute += error;
       sums.mean[c] += a;
       sums.reference_mean[c] += r;

@@ -7,6 +7,14 @@
 
 namespace vernier {
 
+/// Keeps relative errors of black pixels finite.
+constexpr double relative_error_epsilon = 0.01;
+/// A squared error relative to the value `r` that is right: of one channel of one pixel. Its mean is relMSE,
+/// the root of that mean the relative RMSE.
+inline double relative_squared(double squared_error, double r) {
+  return squared_error / (r * r + relative_error_epsilon);
+}
+
 /// Differences between a picture x and a reference r of the same size, over all pixels and three channels.
 struct ImageDifference {
   double mse = 0;                                  ///< mean (x - r)^2

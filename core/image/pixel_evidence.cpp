@@ -1,6 +1,7 @@
 #include "core/image/pixel_evidence.h"
 
 #include "core/base/parallel.h"
+#include "core/image/metrics.h"
 
 namespace vernier {
 namespace {
@@ -47,8 +48,7 @@ Vec3d likely_value(const Film& film, int x, int y) {
 double log_relative_variance(const Film& film, const Image& likely, int x, int y) {
   const Vec3d variance = independent_variance(film, x, y);
   double sum = 0;
-  for (int c = 0; c < 3; ++c)
-    sum += variance[c] / (square(likely.pixel(x, y)[c]) + relative_error_epsilon) / 3;
+  for (int c = 0; c < 3; ++c) sum += relative_squared(variance[c], likely.pixel(x, y)[c]) / 3;
   return std::log(sum + least_log_variance);
 }
 

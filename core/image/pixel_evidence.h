@@ -7,9 +7,6 @@
 
 namespace vernier {
 
-/// Of the relative squared error, (x - r)^2 / (r^2 + epsilon).
-constexpr double relative_error_epsilon = 0.01;
-
 /// Square of half the difference of the halves: its expectation is the variance of the pixel.
 Vec3d squared_half_difference(const Film& film, int x, int y);
 /// Variance that the pixel would have if its samples were independent. They are stratified: most pixels have
