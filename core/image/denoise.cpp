@@ -1,10 +1,14 @@
 #include "core/image/denoise.h"
 
+#include <array>
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/image/convolve.h"
 #include "core/image/denoise_filters.h"
+#include "core/image/likely_value.h"
+#include "core/image/pixel_evidence.h"
 
 namespace vernier {
 namespace {
@@ -17,56 +21,116 @@ constexpr Denoiser table[] = {
     {"median", "median of the 5 x 5 pixels around, as far as the noise explains the change", denoise_median},
 };
 
-constexpr double epsilon = 0.01;  // of the relative error, as in core/image/error_estimate.h
-constexpr int block = 32;         // pixels a side: wider than any filter's window
-constexpr int pool = 15;          // pixels a side over which the noise that is left is averaged
+constexpr int block = 32;  // pixels a side: wider than any filter's window
+constexpr int pool = 15;   // pixels a side over which the noise that is left is averaged
 
-double squared(double x) { return x * x; }
+/// Two independent measurements of one picture, as likely_value wants them.
+struct Halves {
+  Image first, second;
+  Image variance;  ///< of each value of their mean
+
+  int width() const { return first.width; }
+  int height() const { return first.height; }
+  Vec3d half_mean(int x, int y, int half) const { return Vec3d(rgb_at(half == 0 ? first : second, x, y)); }
+  Vec3d pixel(int x, int y) const { return (half_mean(x, y, 0) + half_mean(x, y, 1)) / 2.0; }
+};
+
+Vec3d independent_variance(const Halves& halves, int x, int y) {
+  return Vec3d(rgb_at(halves.variance, x, y));
+}
+
+/// Finite everywhere. Where there are no error layers no variance is known, and the pixels stand for the
+/// truth.
+Halves noisy_halves(const NoisyImage& first, const NoisyImage& second) {
+  Halves halves{fill_not_finite(first.color), fill_not_finite(second.color),
+                Image(first.color.width, first.color.height, 3)};
+  for (const NoisyImage* half : {&first, &second})
+    if (half->error) {
+      const Image error = fill_not_finite(*half->error);
+      for (size_t i = 0; i < error.values.size(); ++i)
+        halves.variance.values[i] += square(error.values[i]) / 4;
+    }
+  return halves;
+}
+
+Halves filtered_halves(Image first, Image second) {
+  Halves halves{std::move(first), std::move(second), {}};
+  halves.variance = halves.first;
+  for (size_t i = 0; i < halves.variance.values.size(); ++i)
+    halves.variance.values[i] = square((halves.first.values[i] - halves.second.values[i]) / 2);
+  return halves;
+}
+
+template <typename Value>
+Image picture_of(int width, int height, const Value& value) {
+  Image image(width, height, 3);
+  parallel_for(size_t(height), [&](size_t y) {
+    for (int x = 0; x < width; ++x) {
+      const Vec3d v = value(x, int(y));
+      for (int c = 0; c < 3; ++c) image.pixel(x, int(y))[c] = float(v[c]);
+    }
+  });
+  return image;
+}
+
+/// Whether one is more than four times the other; neither is negative.
+bool far_apart(double a, double b) { return std::max(a, b) > 4 * std::min(a, b); }
+
+/// The filtered value; where its halves are far apart one has kept what a single sample brought, and it is no
+/// more than its neighbours' mean.
+Vec3d agreed_value(const Halves& filtered, int x, int y) {
+  const Vec3d first = filtered.half_mean(x, y, 0), second = filtered.half_mean(x, y, 1);
+  const Vec3d around = mean_around(filtered, x, y);
+  Vec3d value = filtered.pixel(x, y);
+  for (int c = 0; c < 3; ++c)
+    if (far_apart(first[c], second[c])) value[c] = std::min(value[c], around[c]);
+  return value;
+}
+
+/// The squares of a value's relative errors are its squared errors times this. For the truth stands what the
+/// filtered halves agree on; where the noisy value is far from that, as much of it as both noisy halves saw.
+/// (Nearer to it such weights would go with the errors that they weigh.) A light that only one half saw would
+/// count as many times itself: a sixth of the noisy value is the least.
+Image relative_weights(const Halves& noisy, const Halves& filtered) {
+  constexpr double least = 1.0 / 6;
+  const int width = noisy.width(), height = noisy.height();
+  const Image agreed = picture_of(width, height, [&](int x, int y) { return agreed_value(filtered, x, y); });
+  const auto agreed_at = [&](int x, int y) { return Vec3d(rgb_at(agreed, x, y)); };
+  return picture_of(width, height, [&](int x, int y) {
+    const Vec3d own = noisy.pixel(x, y), likely = likely_value(noisy, x, y, agreed_at);
+    Vec3d value = agreed_at(x, y);
+    for (int c = 0; c < 3; ++c)
+      if (far_apart(own[c], value[c])) value[c] = likely[c];
+    value = max(value, least * own);
+    return Vec3d(1, 1, 1) / (value * value + Vec3d(relative_error_epsilon));
+  });
+}
 
 /// Sums of the squared relative errors of the pixels of a block.
 struct BlockSums {
   double noisy = 0, denoised = 0, pixels = 0;
 };
 
-/// What a pixel's error is relative to, in place of the truth: its denoised value. Lights that the filter
-/// took away would count as many times themselves, so where both halves saw far more it is what they agree
-/// on, and in any case a third of what they saw on average.
-double truth_like(double a, double b, double denoised) {
-  constexpr double far = 4;
-  const double confirmed = std::min(a, b);
-  return confirmed > far * denoised ? confirmed : std::max(denoised, (a + b) / 6);
-}
-
-/// The squares of a channel's relative errors are its squared errors times this over 3.
-double relative_weight(float a, float b, float fa, float fb) {
-  return 1 / (squared(truth_like(a, b, 0.5 * (double(fa) + fb))) + epsilon);
-}
-
-/// What one pixel's halves a and b, filtered to fa and fb, say of its squared errors.
-void add_pixel(BlockSums& sums, const float* a, const float* b, const float* fa, const float* fb) {
+/// Adds what one pixel says of its squared errors. What the filter has taken from one half is independent of
+/// what it has taken from the other, and the expectation of both is what it blurs: so that squared is their
+/// product. The variance that is left is that of the mean of the filtered halves.
+void add_pixel(BlockSums& sums, const Halves& noisy, const Halves& filtered, const Image& weights, int x,
+               int y) {
+  const Vec3d a = noisy.half_mean(x, y, 0), b = noisy.half_mean(x, y, 1);
+  const Vec3d fa = filtered.half_mean(x, y, 0), fb = filtered.half_mean(x, y, 1);
+  const Vec3d weight(rgb_at(weights, x, y)), apart = (a - b) / 2.0;
+  sums.noisy += dot(weight, apart * apart) / 3;
+  sums.denoised += dot(weight, (fa - a) * (fb - b) + independent_variance(filtered, x, y)) / 3;
   ++sums.pixels;
-  for (int c = 0; c < 3; ++c) {
-    const double weight = relative_weight(a[c], b[c], fa[c], fb[c]) / 3;
-    const double half_variance = squared(double(a[c]) - b[c]) / 2;
-    // Each filtered half against the other half, which knows nothing of it: its own squared error and the
-    // other's variance.
-    const double half_error =
-        (squared(double(fa[c]) - b[c]) + squared(double(fb[c]) - a[c])) / 2 - half_variance;
-    // The mean of the filtered halves has all of their bias and half of their variance.
-    sums.denoised += weight * (half_error - squared(double(fa[c]) - fb[c]) / 4);
-    sums.noisy += weight * half_variance / 2;
-  }
 }
 
-std::vector<BlockSums> block_sums(const Image& a, const Image& b, const Image& fa, const Image& fb) {
-  const int columns = (a.width + block - 1) / block, rows = (a.height + block - 1) / block;
+std::vector<BlockSums> block_sums(const Halves& noisy, const Halves& filtered, const Image& weights) {
+  const int columns = (noisy.width() + block - 1) / block, rows = (noisy.height() + block - 1) / block;
   std::vector<BlockSums> sums(size_t(columns) * size_t(rows));
-  for (int y = 0; y < a.height; ++y)
-    for (int x = 0; x < a.width; ++x)
-      // A pixel that is not finite has no error to speak of.
-      if (const float sum = max_component(rgb_at(a, x, y) + rgb_at(b, x, y)); std::isfinite(sum))
-        add_pixel(sums[size_t(y / block) * size_t(columns) + size_t(x / block)], a.pixel(x, y), b.pixel(x, y),
-                  fa.pixel(x, y), fb.pixel(x, y));
+  for (int y = 0; y < noisy.height(); ++y)
+    for (int x = 0; x < noisy.width(); ++x)
+      add_pixel(sums[size_t(y / block) * size_t(columns) + size_t(x / block)], noisy, filtered, weights, x,
+                y);
   return sums;
 }
 
@@ -80,33 +144,29 @@ DenoisedError estimate(const std::vector<BlockSums>& blocks) {
   }
   const double mean = total.denoised / total.pixels;
   double spread = 0;
-  for (const BlockSums& sums : blocks) spread += squared(sums.denoised - mean * sums.pixels);
+  for (const BlockSums& sums : blocks) {
+    const double off = sums.denoised - mean * sums.pixels;
+    spread += off * off;
+  }
   const double n = double(blocks.size());
   const double error = n > 1 ? std::sqrt(spread * n / (n - 1)) / total.pixels : std::abs(mean);
   const auto root = [](double x) { return std::sqrt(std::max(0.0, x)); };
   return {root(total.noisy / total.pixels), root(mean), root(mean - 1.96 * error), root(mean + 1.96 * error)};
 }
 
-/// The variance that is left, (fa - fb)^2 / 4, averaged about each pixel as a part of what the error is
-/// relative to, lest a lamp's is its dark surroundings', times one factor for the whole picture: its squared
-/// error over that variance, which lacks what the filter has blurred.
-Image pixel_errors(const Image& a, const Image& b, const Image& fa, const Image& fb, double rel_rmse) {
-  const auto weight = [&](size_t i) {
-    const double w = relative_weight(a.values[i], b.values[i], fa.values[i], fb.values[i]);
-    return std::isfinite(w) ? w : 1 / epsilon;
-  };
-  Image left(a.width, a.height, 3);
+/// The variance that is left, averaged about each pixel as a part of what the error is relative to, lest a
+/// lamp's is its dark surroundings', times one factor for the whole picture: its squared error over that
+/// variance, which lacks what the filter has blurred.
+Image pixel_errors(const Image& variance, const Image& weights, double rel_rmse) {
+  Image left = variance;
   double sum = 0;
-  for (size_t i = 0; i < left.values.size(); ++i) {
-    const double relative = weight(i) * squared(double(fa.values[i]) - fb.values[i]) / 4;
-    left.values[i] = float(relative);
-    sum += relative;
-  }
-  const double factor = sum > 0 ? std::max(1.0, squared(rel_rmse) * double(left.values.size()) / sum) : 1;
+  for (size_t i = 0; i < left.values.size(); ++i) sum += left.values[i] *= weights.values[i];
+  const double total = rel_rmse * rel_rmse * double(left.values.size());
+  const double factor = sum > 0 ? std::max(1.0, total / sum) : 1;
   const std::vector<float> mean(pool, 1.f / pool);
   left = convolve(left, mean, mean);
   for (size_t i = 0; i < left.values.size(); ++i)
-    left.values[i] = float(std::sqrt(factor * left.values[i] / weight(i)));
+    left.values[i] = float(std::sqrt(factor * left.values[i] / weights.values[i]));
   return left;
 }
 
@@ -115,16 +175,16 @@ Image pixel_errors(const Image& a, const Image& b, const Image& fa, const Image&
 std::span<const Denoiser> denoisers() { return table; }
 
 DenoisedHalves denoise_halves(const Denoiser& denoiser, const NoisyImage& first, const NoisyImage& second) {
-  const Image &a = first.color, &b = second.color;
-  if (a.width != b.width || a.height != b.height)
+  if (first.color.width != second.color.width || first.color.height != second.color.height)
     throw Error(ErrorKind::usage, "the two halves of a picture to denoise differ in size");
-  const Image fa = denoiser.filter(first), fb = denoiser.filter(second);
+  const Halves filtered = filtered_halves(denoiser.filter(first), denoiser.filter(second));
+  const Halves noisy = noisy_halves(first, second);
+  const Image weights = relative_weights(noisy, filtered);
   DenoisedHalves result;
-  result.picture = fa;
-  for (size_t i = 0; i < fa.values.size(); ++i)
-    result.picture.values[i] = 0.5f * (fa.values[i] + fb.values[i]);
-  result.error = estimate(block_sums(a, b, fa, fb));
-  result.pixel_error = pixel_errors(a, b, fa, fb, result.error.rel_rmse);
+  result.picture =
+      picture_of(noisy.width(), noisy.height(), [&](int x, int y) { return filtered.pixel(x, y); });
+  result.error = estimate(block_sums(noisy, filtered, weights));
+  result.pixel_error = pixel_errors(filtered.variance, weights, result.error.rel_rmse);
   return result;
 }
 

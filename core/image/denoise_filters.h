@@ -6,6 +6,12 @@
 
 namespace vernier {
 
+/// The mean of the finite pixels nearby in place of pixels that are not finite, or beyond 1e18.
+Image fill_not_finite(const Image& image);
+
+/// The same for every layer. Throws Error(usage) when sizes or channels are wrong.
+NoisyImage made_finite(const NoisyImage& noisy);
+
 /// A picture made ready: finite, divided by albedo, with its variance and the guides as distances.
 struct GuidedImage {
   Image color;

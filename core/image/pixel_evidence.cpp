@@ -1,6 +1,7 @@
 #include "core/image/pixel_evidence.h"
 
 #include "core/base/parallel.h"
+#include "core/image/likely_value.h"
 #include "core/image/metrics.h"
 
 namespace vernier {
@@ -11,39 +12,6 @@ constexpr double heavy_share = 0.25;         // of a pixel's light in one sample
 constexpr double surprising_variance = 30;   // times what is usual around the pixel
 constexpr double common_surprise = 0.05;     // of a neighbourhood's pixels
 constexpr double least_log_variance = 1e-8;  // relative; keeps logarithms finite
-
-/// Calls visit(x, y) for the pixels of the square of side 2 radius + 1 around (x, y) that exist.
-template <typename Visit>
-void for_each_near(const Film& film, int x, int y, int radius, const Visit& visit) {
-  for (int j = std::max(0, y - radius); j <= std::min(film.height() - 1, y + radius); ++j)
-    for (int i = std::max(0, x - radius); i <= std::min(film.width() - 1, x + radius); ++i) visit(i, j);
-}
-
-/// The pixel drawn towards the mean of its eight neighbours, the more the noisier it is: by its variance
-/// against how much the truth varies here (empirical Bayes; Efron and Morris 1973, "Stein's Estimation Rule
-/// and Its Competitors"). The halves' errors are independent, so the product of their distances from that
-/// mean shows what is no noise.
-Vec3d likely_value(const Film& film, int x, int y) {
-  const Vec3d own = film.pixel(x, y);
-  Vec3d mean(0, 0, 0);
-  int neighbours = -1;
-  for_each_near(film, x, y, 1, [&](int i, int j) {
-    mean += film.pixel(i, j);
-    ++neighbours;
-  });
-  if (neighbours == 0) return own;
-  mean = (mean - own) / double(neighbours);
-  Vec3d truth(0, 0, 0);
-  for_each_near(film, x, y, 1, [&](int i, int j) {
-    truth += (film.half_mean(i, j, 0) - mean) * (film.half_mean(i, j, 1) - mean);
-  });
-  truth = max(truth / double(neighbours + 1), Vec3d(0, 0, 0));
-  const Vec3d noise = independent_variance(film, x, y);
-  Vec3d likely = own;
-  for (int c = 0; c < 3; ++c)
-    if (noise[c] > 0) likely[c] = mean[c] + truth[c] / (truth[c] + noise[c]) * (own[c] - mean[c]);
-  return max(likely, Vec3d(0, 0, 0));
-}
 
 double log_relative_variance(const Film& film, const Image& likely, int x, int y) {
   const Vec3d variance = independent_variance(film, x, y);

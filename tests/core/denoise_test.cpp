@@ -183,6 +183,38 @@ TEST_P(EveryDenoiser, ErrorOfTheResultIsEstimated) {
 INSTANTIATE_TEST_SUITE_P(Table, EveryDenoiser, testing::ValuesIn(denoisers().begin(), denoisers().end()),
                          [](const auto& test) { return std::string(test.param.name); });
 
+// Squared relative errors of the values of one pixel, in a dark picture that halves and truth agree on but
+// for that pixel.
+double pixel_error(const Denoiser& denoiser, float first, float second, float error) {
+  const auto half = [&](float value) {
+    NoisyImage noisy{constant(40, 40, {0.1f, 0.1f, 0.1f}), constant(40, 40, {0.001f, 0.001f, 0.001f})};
+    for (int c = 0; c < 3; ++c) {
+      noisy.color.pixel(20, 20)[c] = value;
+      noisy.error->pixel(20, 20)[c] = error;
+    }
+    return noisy;
+  };
+  return square(denoise_halves(denoiser, half(first), half(second)).error.rel_rmse) * 40 * 40;
+}
+
+constexpr Denoiser keep_all{"keep_all", "", [](const NoisyImage& noisy) { return noisy.color; }};
+constexpr Denoiser darken{"darken", "", [](const NoisyImage& noisy) {
+                            return constant(noisy.color.width, noisy.color.height, {0.1f, 0.1f, 0.1f});
+                          }};
+
+// Half of a firefly that one half has is left in the mean: an error of many times the dark pixel's light, of
+// which six times is the most that counts.
+TEST(DenoisedError, FireflyThatStaysCountsManyTimes) {
+  EXPECT_NEAR(pixel_error(keep_all, 500, 0.1f, 400), 36, 1);
+}
+
+// A light that is taken away is an error of about itself.
+TEST(DenoisedError, LightThatIsTakenAwayCountsAboutOnce) {
+  EXPECT_NEAR(pixel_error(darken, 500, 500, 10), 1, 0.1);
+  EXPECT_NEAR(pixel_error(darken, 400, 600, 100), 1, 0.7);
+  EXPECT_NEAR(pixel_error(darken, 500, 0.1f, 400), 0, 0.01) << "seen by one half: no error that is known";
+}
+
 TEST(Denoise, SingleBrightSampleIsRemoved) {
   NoisyImage noisy{constant(40, 40, {0.1f, 0.1f, 0.1f}), constant(40, 40, {0.01f, 0.01f, 0.01f})};
   for (int c = 0; c < 3; ++c) noisy.color.pixel(20, 20)[c] = noisy.error->pixel(20, 20)[c] = 500;
