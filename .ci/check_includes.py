@@ -16,6 +16,7 @@ WRAPPED = [
     (r"OpenImageIO/hash\.h", r"scene/import/asset_files\.cpp|core/image/[^/]*\.cpp"),
     (r"OpenImageIO/(?!hash\.h).*", r"(core/image/[^/]*|tests/core/.*)\.cpp"),
     (r"OpenColorIO/.*", r"(core/image/[^/]*|tests/core/.*)\.cpp"),
+    (r"OpenImageDenoise/.*", r"(core/image|tests/oidn)/denoise_oidn[^/]*\.cpp"),
     (r"(draco/.*|meshoptimizer\.h)", r"(tests/)?scene/(import/)?[^/]*\.cpp"),
     (r"CLI/.*", r"apps/.*"),
     (r"(gtest|gmock)/.*", r"tests/.*"),

@@ -6,7 +6,6 @@
 #include "apps/messages.h"
 #include "apps/render_options.h"
 #include "core/base/error.h"
-#include "core/base/names.h"
 #include "core/base/parallel.h"
 
 namespace vernier::apps {
@@ -33,7 +32,7 @@ ExitCode run_denoise(const DenoiseFlags& flags, const std::string& command_line)
   }
   if (flags.input.empty() || flags.output.empty())
     throw Error(ErrorKind::usage, "which pictures? Give IN.exr -o OUT.exr; see vernier denoise --help");
-  const Denoiser& denoiser = find_by_name(denoisers(), "filter", flags.filter);
+  const Denoiser& denoiser = find_denoiser(flags.filter);
   if (is_display_file(flags.output))
     throw Error(
         ErrorKind::usage, {}, "-o",

@@ -312,7 +312,7 @@ RenderRequest check_render_flags(const RenderFlags& flags) {
   request.options = make_options(flags);
   request.progress = parse_progress(flags);
   request.layers = choose_layers(flags);
-  if (!flags.denoise.empty()) request.denoiser = &find_by_name(denoisers(), "filter", flags.denoise);
+  if (!flags.denoise.empty()) request.denoiser = &find_denoiser(flags.denoise);
   if (request.options.width > 0) check_picture_size(request.options, request.layers);
   request.display = choose_display(flags);
   for (const auto& path : flags.outputs) check_writable_image(path);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/names.h"
 #include "core/base/parallel.h"
 #include "core/image/convolve.h"
 #include "core/image/denoise_filters.h"
@@ -19,6 +20,9 @@ constexpr Denoiser table[] = {
     {"gaussian", "averages neighbours by distance, as far as the noise explains the change",
      denoise_gaussian},
     {"median", "median of the 5 x 5 pixels around, as far as the noise explains the change", denoise_median},
+#ifdef VERNIER_OIDN
+    {"oidn", "Open Image Denoise, a trained network; does not use the error layer", denoise_oidn, true},
+#endif
 };
 
 constexpr int block = 32;  // pixels a side: wider than any filter's window
@@ -173,6 +177,17 @@ Image pixel_errors(const Image& variance, const Image& weights, double rel_rmse)
 }  // namespace
 
 std::span<const Denoiser> denoisers() { return table; }
+
+const Denoiser& find_denoiser(std::string_view name) {
+#ifndef VERNIER_OIDN
+  if (name == "oidn")
+    throw Error(
+        ErrorKind::usage,
+        "this build has no filter 'oidn': install Open Image Denoise (www.openimagedenoise.org) where "
+        "CMake finds it and configure again with -DVERNIER_OIDN=ON");
+#endif
+  return find_by_name(denoisers(), "filter", name);
+}
 
 DenoisedHalves denoise_halves(const Denoiser& denoiser, const NoisyImage& first, const NoisyImage& second) {
   if (first.color.width != second.color.width || first.color.height != second.color.height)

@@ -17,17 +17,24 @@ struct NoisyImage {
   std::optional<Image> normal = {};  ///< unit vectors: pixels that face elsewhere are not mixed
 };
 
-/// One line of the table of denoisers. `filter` is a pure function: equal input gives equal bits on any
-/// number of threads. Nothing is clamped; pixels that are not finite, or beyond 1e18, are replaced by their
-/// neighbours' mean first. Throws Error(usage) when sizes differ.
+/// One line of the table of denoisers. `filter` is a pure function. Pixels that are not finite, or beyond
+/// 1e18, are replaced by their neighbours' mean first; what comes out is finite, and not negative where
+/// nothing is that goes in. Throws Error(usage) when sizes differ.
 struct Denoiser {
   std::string_view name;
   std::string_view description;
   Image (*filter)(const NoisyImage&);
+  /// A network. Of all others more is known: equal input gives equal bits on any number of threads, a picture
+  /// of one value stays as it is, values of any size keep it where they are sure, and `error` is heeded.
+  bool learned = false;
 };
 
 /// All denoisers of this build (core/image/denoise.cpp).
 std::span<const Denoiser> denoisers();
+
+/// The denoiser of that name; throws Error(usage) that lists the names there are, or says how a build with
+/// that one is made.
+const Denoiser& find_denoiser(std::string_view name);
 
 /// The relative RMSE of a picture, sqrt(mean((x - r)^2 / (r^2 + 0.01))), with the ends of a 95 % interval.
 struct DenoisedError {

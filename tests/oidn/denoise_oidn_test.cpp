@@ -1,0 +1,92 @@
+#include <OpenImageDenoise/oidn.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/image/denoise_filters.h"
+
+// The adapter to Open Image Denoise, compiled against a double of that library. What the network makes of a
+// picture only a build with the library can test (tests/core/denoise_test.cpp).
+
+namespace vernier {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Image picture(float value) {
+  Image image(5, 4, 3);
+  std::fill(image.values.begin(), image.values.end(), value);
+  return image;
+}
+
+class DenoiseOidn : public testing::Test {
+ protected:
+  DenoiseOidn() { oidn::record = {}; }
+  const std::vector<std::string>& calls() const { return oidn::record.calls; }
+};
+
+TEST_F(DenoiseOidn, AsksInTheLibrarysOrder) {
+  const ThreadLimit threads(2);
+  const Image result = denoise_oidn({picture(3), picture(1), picture(0.5f), picture(0.6f)});
+  EXPECT_THAT(calls(), ElementsAre("new CPU device", "numThreads 2", "setAffinity off", "commit device",
+                                   "new filter RT", "image color 5x4 float3", "image albedo 5x4 float3",
+                                   "image normal 5x4 float3", "image output 5x4 float3", "hdr on",
+                                   "commit filter", "execute", "release filter", "release device"));
+  EXPECT_EQ(result.values, picture(1.5f).values);
+}
+
+TEST_F(DenoiseOidn, NormalsWithoutAlbedoAreLeftOut) {
+  denoise_oidn({picture(1), {}, {}, picture(0.6f)});
+  EXPECT_THAT(calls(), testing::Not(testing::Contains(HasSubstr("image normal"))));
+  EXPECT_THAT(calls(), testing::Contains("execute"));
+}
+
+TEST_F(DenoiseOidn, PixelsThatAreNotFiniteTakeTheirNeighboursMean) {
+  NoisyImage noisy{picture(4)};
+  noisy.color.pixel(2, 2)[1] = NAN;
+  EXPECT_EQ(denoise_oidn(noisy).values, picture(2).values);
+}
+
+TEST_F(DenoiseOidn, SizesMustAgree) {
+  EXPECT_THROW(denoise_oidn({picture(1), {}, Image(5, 5, 3)}), Error);
+  EXPECT_THAT(calls(), ElementsAre());
+}
+
+TEST_F(DenoiseOidn, WhatFailsIsToldAndReleased) {
+  for (const char* call : {"new CPU device", "commit device", "new filter RT", "commit filter", "execute"})
+    for (const oidn::Error failure : {oidn::Error::Unknown, oidn::Error::OutOfMemory}) {
+      oidn::record = {{}, call, failure};
+      try {
+        denoise_oidn({picture(1)});
+        ADD_FAILURE() << call;
+      } catch (const Error& error) {
+        EXPECT_THAT(error.what(), HasSubstr("Open Image Denoise: the double fails")) << call;
+        EXPECT_EQ(error.kind(), failure == oidn::Error::OutOfMemory ? ErrorKind::memory : ErrorKind::usage);
+      }
+      std::string last = call;
+      for (const std::string& next : calls())
+        if (next != "release filter" && next != "release device") last = next;
+      EXPECT_EQ(last, call) << "nothing is asked after a failure";
+      const auto count = [&](const std::string& name) {
+        return std::count(calls().begin(), calls().end(), name);
+      };
+      const bool device = calls().size() > 1, filter = count("image color 5x4 float3") == 1;
+      EXPECT_EQ(count("release device"), device);
+      EXPECT_EQ(count("release filter"), filter);
+    }
+}
+
+// Both halves are halved: the estimate sees the half of the light that is missing.
+TEST_F(DenoiseOidn, ErrorIsEstimatedAsOfAnyFilter) {
+  const DenoisedHalves halves = denoise_halves({"oidn", "", denoise_oidn, true}, {picture(1)}, {picture(1)});
+  EXPECT_EQ(halves.picture.values, picture(0.5f).values);
+  EXPECT_GT(halves.error.rel_rmse, 0.5);
+}
+
+}  // namespace
+}  // namespace vernier
