@@ -9,7 +9,7 @@
 #include "core/image/convolve.h"
 #include "core/image/denoise_filters.h"
 #include "core/image/likely_value.h"
-#include "core/image/pixel_evidence.h"
+#include "core/image/metrics.h"
 
 namespace vernier {
 namespace {
