@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 struct CalibrationFlags {
   RenderFlags render;  ///< scene, surroundings, size, how the picture is made
-  int spp = 64, seeds = 20, reference_spp = 4096;
+  int spp = 64, seeds = 20;
   std::string reference, json;
 };
 
@@ -56,11 +56,10 @@ void print_report(const Json& report) {
 /// Without an error layer it could not be told whose errors are seen.
 Reference read_reference_with_error(const std::string& file) {
   Reference reference = read_reference(file);
-  if (reference.standard_error.values.empty() || reference.rel_mse <= 0)
-    throw Error(ErrorKind::input,
-                fmt::format("{}: has no layer 'error' or no vernier:relRmse; render the reference with "
-                            "vernier render --adaptive off --aov error",
-                            file));
+  if (reference.standard_error.values.empty())
+    throw Error(ErrorKind::input, fmt::format("{}: has no layer 'error'; render the reference with "
+                                              "vernier render --adaptive off --aov error",
+                                              file));
   return reference;
 }
 
@@ -68,6 +67,10 @@ ExitCode run_bench_calibration(const CalibrationFlags& flags, const Program& pro
   require_scene(flags.render.scene, "bench calibration");
   if (!flags.json.empty()) check_writable_text_file(flags.json);
   std::optional<Reference> given;
+  if (flags.reference.empty() && flags.seeds < fewest_runs_without_reference)
+    throw Error(ErrorKind::usage, fmt::format("--seeds: at least {} without --reference, since each run is "
+                                              "compared with the mean of the others",
+                                              fewest_runs_without_reference));
   if (!flags.reference.empty()) given = read_reference_with_error(flags.reference);
   NoticeLog log(false);
   SceneDescription description = import_scene(flags.render.scene, flags.render.import);
@@ -84,23 +87,20 @@ ExitCode run_bench_calibration(const CalibrationFlags& flags, const Program& pro
     options.target_error = parse_fraction(flags.render.error);
   }
   const Camera camera(view, options.width, options.height);
-  const int max_depth = flags.render.integrator_options.max_depth;
-  const Reference reference =
-      given ? std::move(*given) : render_reference(scene, camera, options, flags.reference_spp, max_depth);
   const auto integrator =
       find_by_name(integrators(), "integrator", "path").make(flags.render.integrator_options);
-  Calibration calibration(reference, options.target_error);
+  std::vector<CalibrationRun> runs;
   for (int seed = 1; seed <= flags.seeds; ++seed) {
     fmt::print(stderr, "seed {} of {}\n", seed, flags.seeds);
     options.seed = uint64_t(seed);
-    calibration.add(render(scene, camera, *integrator, options, never_stop));
+    runs.emplace_back(render(scene, camera, *integrator, options, never_stop));
   }
   Json report = bench_header(program);
   report["scene"] = flags.render.scene;
   report["width"] = options.width;
   report["height"] = options.height;
-  report["reference"] = reference.json;
-  report.update(calibration.json());
+  report["reference"] = given ? given->json : Json(nullptr);
+  report.update(calibrate(runs, given, options.target_error));
   print_report(report);
   if (!flags.json.empty())
     write_text_file(flags.json, report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
@@ -125,12 +125,10 @@ void register_bench_calibration(CLI::App& bench, Program& program) {
       ->check(whole_number(1, 1'000'000))
       ->type_name("K")
       ->capture_default_str();
-  command->add_option("--reference", flags->reference, "of other seeds, evenly sampled, with the layer error")
+  command
+      ->add_option("--reference", flags->reference,
+                   "evenly sampled, with the layer error (the mean of the other seeds)")
       ->type_name("FILE");
-  command->add_option("--reference-spp", flags->reference_spp, "else: samples a pixel of one rendered first")
-      ->check(whole_number(2, 1 << 30))
-      ->type_name("N")
-      ->capture_default_str();
   add_measured_picture_flags(*command, flags->render);
   command->add_option("--json", flags->json, "write the figures as JSON")->type_name("FILE");
   command->callback([&program, flags] {

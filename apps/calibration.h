@@ -2,7 +2,8 @@
 
 #include <array>
 #include <nlohmann/json_fwd.hpp>
-#include <vector>
+#include <optional>
+#include <span>
 
 #include "apps/bench_reference.h"
 #include "integrators/render.h"
@@ -18,38 +19,24 @@ struct NominalCoverage {
 constexpr std::array<NominalCoverage, 4> nominal_coverages{
     {{0.50, 0.674490}, {0.90, 1.644854}, {0.95, 1.959964}, {0.99, 2.575829}}};
 
-/// Adds up many renders of one picture, which differ in their seeds, against a reference with error layer.
-class Calibration {
- public:
-  /// `asked`: the error at which each render was told to stop; 0: none.
-  explicit Calibration(const Reference& reference, double asked = 0);
+/// What one render says, of itself and of its error.
+struct CalibrationRun {
+  explicit CalibrationRun(const RenderResult& result);
 
-  void add(const RenderResult& result);
-
-  /// docs/bench.md, `vernier bench calibration`.
-  nlohmann::ordered_json json() const;
-
- private:
-  /// Sums of squared errors relative to r^2 + 0.01.
-  struct Decile {
-    double predicted = 0, actual = 0;
-    size_t values = 0;
-  };
-  using Deciles = std::array<Decile, 10>;
-  struct Image {
-    double estimated, low, high, truth, samples_per_pixel;
-  };
-  /// Value `i` of the pictures, three a pixel, known with this `error`.
-  void add_value(size_t i, double value, double error, Decile& sums);
-  nlohmann::ordered_json deciles_json() const;
-
-  const Reference& reference_;
-  const double asked_;
-  std::vector<uint8_t> decile_of_pixel_;  ///< by luminance of the reference
-  std::vector<Deciles> deciles_;          ///< of each run
-  std::array<size_t, nominal_coverages.size()> covered_{};
-  size_t values_ = 0, pixels_ = 0, flagged_ = 0;
-  std::vector<Image> images_;
+  Image picture;
+  ErrorLayers layers;
+  ErrorEstimate error;
+  double samples_per_pixel;
 };
+
+/// Fewest runs that calibrate() can do with when it is given no reference.
+constexpr int fewest_runs_without_reference = 3;
+
+/// Compares the reported errors of renders of one picture, which differ in their seeds, with those that they
+/// have against `reference`, which has an error layer; without one, each against the mean of the others. What
+/// either is itself wrong by is taken off. `asked`: the error at which each render was told to stop; 0: none.
+/// The result: docs/bench.md, `vernier bench calibration`.
+nlohmann::ordered_json calibrate(std::span<const CalibrationRun> runs,
+                                 const std::optional<Reference>& reference, double asked);
 
 }  // namespace vernier::apps

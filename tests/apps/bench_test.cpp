@@ -84,6 +84,9 @@ TEST(BenchCalibration, ComparesReportedErrorsWithThoseAgainstAReference) {
   EXPECT_EQ(refused.exit_code, input);
   ASSERT_EQ(refused.err_lines().size(), 1u) << refused.err;
   EXPECT_THAT(refused.err, HasSubstr("--aov error"));
+  const auto lonely = test::run_vernier({"bench", "calibration", cornell_box, "--seeds", "2"});
+  EXPECT_EQ(lonely.exit_code, usage);
+  EXPECT_THAT(lonely.err, HasSubstr("--seeds"));
 }
 
 TEST(Bench, MisuseIsOneLineAndNothingIsWritten) {
