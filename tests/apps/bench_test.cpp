@@ -9,9 +9,9 @@ namespace vernier {
 namespace {
 
 using nlohmann::json;
+using test::cornell_box;
 using testing::HasSubstr;
 
-const std::string cornell_box = VERNIER_SOURCE_DIR "/tests/scenes/cornell_box.gltf";
 constexpr int done = 0, usage = 2, input = 3;
 
 TEST(BenchRays, TimesAcceleratorsBesideEmbree) {

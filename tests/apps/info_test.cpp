@@ -8,10 +8,9 @@
 namespace vernier {
 namespace {
 
+using test::cornell_box;
+using test::two_spheres;
 using testing::HasSubstr;
-
-const std::string cornell_box = VERNIER_SOURCE_DIR "/tests/scenes/cornell_box.gltf";
-const std::string two_spheres = VERNIER_SOURCE_DIR "/tests/scenes/two_spheres.gltf";
 
 TEST(Info, CountsAsJson) {
   const test::ProcessResult result = test::run_vernier({"info", cornell_box, "--json"});

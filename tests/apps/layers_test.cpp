@@ -12,8 +12,6 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string cornell_box = VERNIER_SOURCE_DIR "/tests/scenes/cornell_box.gltf";
-
 ProcessResult render(const std::vector<std::string>& more) {
   std::vector<std::string> arguments{"render", cornell_box, "--progress", "none", "--size", "24x24"};
   arguments.insert(arguments.end(), more.begin(), more.end());

@@ -10,8 +10,6 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string cornell_box = VERNIER_SOURCE_DIR "/tests/scenes/cornell_box.gltf";
-
 class MergeCommand : public testing::Test {
  protected:
   /// Renders NAME.exr and NAME.ckpt.

@@ -11,12 +11,11 @@
 namespace vernier {
 namespace {
 
+using test::cornell_box;
 using test::ProcessResult;
 using test::run_vernier;
+using test::two_spheres;
 using testing::HasSubstr;
-
-const std::string cornell_box = VERNIER_SOURCE_DIR "/tests/scenes/cornell_box.gltf";
-const std::string two_spheres = VERNIER_SOURCE_DIR "/tests/scenes/two_spheres.gltf";
 
 ProcessResult render(const std::string& scene, const std::string& output,
                      std::vector<std::string> more = {}) {

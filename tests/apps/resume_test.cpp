@@ -13,8 +13,6 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-const std::string cornell_box = VERNIER_SOURCE_DIR "/tests/scenes/cornell_box.gltf";
-
 class ResumeCommand : public testing::Test {
  protected:
   ProcessResult render(const std::string& name, const std::vector<std::string>& more,

@@ -10,15 +10,13 @@
 namespace vernier {
 namespace {
 
-const std::string cornell_box = VERNIER_SOURCE_DIR "/tests/scenes/cornell_box.gltf";
-
 class StoppedBy : public testing::TestWithParam<int> {};
 
 TEST_P(StoppedBy, SignalWritesThePictureSoFar) {
   const test::TemporaryFolder folder;
   const test::ProcessResult result =
-      test::run_vernier({"render", cornell_box, "-o", folder.file("a.exr"), "--size", "64x64", "--time", "1h",
-                         "--progress", "json", "--stats", folder.file("a.json")},
+      test::run_vernier({"render", test::cornell_box, "-o", folder.file("a.exr"), "--size", "64x64", "--time",
+                         "1h", "--progress", "json", "--stats", folder.file("a.json")},
                         {GetParam(), "\"event\":\"progress\""});
   EXPECT_EQ(result.exit_code, 5) << result.err;
   const LayeredImage file = read_layers(folder.file("a.exr"));

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "core/base/error.h"
-#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
 
 namespace vernier {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "core/base/error.h"
 #include "tests/support/png_bytes.h"
-#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
 
 namespace vernier {
 namespace {

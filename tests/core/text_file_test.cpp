@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
 
 namespace vernier {
 namespace {

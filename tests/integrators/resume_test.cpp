@@ -8,7 +8,7 @@
 #include "core/base/parallel.h"
 #include "integrators/checkpoint.h"
 #include "scene/camera.h"
-#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/test_scenes.h"
 
 namespace vernier::test {

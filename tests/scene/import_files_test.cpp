@@ -80,33 +80,33 @@ TEST(ImportFiles, RejectsLinksThatLeaveTheFolder) {
   const TemporaryFolder folder;
   const GltfFile file = triangle_with_uri("link.bin");
   const std::string path = file.save(folder, "scene/scene.gltf");
-  std::filesystem::create_symlink(folder.path("data.bin"), folder.path("scene/link.bin"));
+  std::filesystem::create_symlink(folder.file("data.bin"), folder.file("scene/link.bin"));
   EXPECT_THAT(import_error(path), HasSubstr("link that leaves"));
-  std::filesystem::remove(folder.path("scene/link.bin"));
+  std::filesystem::remove(folder.file("scene/link.bin"));
   folder.write("scene/other.bin", file.buffer);
-  std::filesystem::create_symlink("other.bin", folder.path("scene/link.bin"));
+  std::filesystem::create_symlink("other.bin", folder.file("scene/link.bin"));
   EXPECT_THAT(import_error(path), IsEmpty());
 }
 
 TEST(ImportFiles, ReadsRegularFilesOnly) {
   const TemporaryFolder folder;
   const std::string path = triangle_with_uri("pipe.bin").save(folder);
-  ASSERT_EQ(mkfifo(folder.path("pipe.bin").c_str(), 0600), 0);
+  ASSERT_EQ(mkfifo(folder.file("pipe.bin").c_str(), 0600), 0);
   EXPECT_THAT(import_error(path), HasSubstr("not a regular file"));
-  EXPECT_THAT(import_error(folder.path("pipe.bin")), HasSubstr("not a regular file"));
-  EXPECT_THAT(import_error(folder.path("")), HasSubstr("not a regular file"));
+  EXPECT_THAT(import_error(folder.file("pipe.bin")), HasSubstr("not a regular file"));
+  EXPECT_THAT(import_error(folder.file("")), HasSubstr("not a regular file"));
   EXPECT_THAT(import_error("/dev/zero"), HasSubstr("not a regular file"));
 }
 
 TEST(ImportFiles, NamesWhatIsMissing) {
   const TemporaryFolder folder;
-  EXPECT_THAT(import_error(folder.path("none.glb")), HasSubstr("none.glb: cannot be read: No such file"));
-  EXPECT_THAT(import_error(folder.path("no/folder/none.glb")),
+  EXPECT_THAT(import_error(folder.file("none.glb")), HasSubstr("none.glb: cannot be read: No such file"));
+  EXPECT_THAT(import_error(folder.file("no/folder/none.glb")),
               HasSubstr("none.glb: cannot be read: No such file"));
   const std::string error = import_error(triangle_with_uri("gone.bin").save(folder));
   EXPECT_THAT(error, HasSubstr("/buffers/0/uri: 'gone.bin' cannot be read"));
   folder.write("empty.gltf", "");
-  EXPECT_THAT(import_error(folder.path("empty.gltf")), HasSubstr("empty"));
+  EXPECT_THAT(import_error(folder.file("empty.gltf")), HasSubstr("empty"));
 }
 
 TEST(ImportFiles, ReadsGlb) {

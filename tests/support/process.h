@@ -1,11 +1,15 @@
 #pragma once
 
-#include <chrono>
-#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "tests/support/temporary_folder.h"
+
 namespace vernier::test {
+
+/// Scene files that programs are run on.
+inline const std::string cornell_box = VERNIER_SOURCE_DIR "/tests/scenes/cornell_box.gltf";
+inline const std::string two_spheres = VERNIER_SOURCE_DIR "/tests/scenes/two_spheres.gltf";
 
 struct ProcessResult {
   int exit_code = -1;  ///< as the process returned it; 128 + N when it died of signal N
@@ -27,26 +31,5 @@ ProcessResult run_process(const std::vector<std::string>& arguments, const SendS
 
 /// The `vernier` program of this build with these arguments.
 ProcessResult run_vernier(std::vector<std::string> arguments, const SendSignal& signal = {});
-
-/// A fresh folder that is removed with all in it at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-  /// Writes a file in it and returns its path.
-  std::string write(const std::string& name, const std::string& bytes) const;
-  /// Names of what is in it, sorted.
-  std::vector<std::string> names() const;
-
- private:
-  std::filesystem::path path_;
-};
-
-std::string read_file(const std::string& path);
 
 }  // namespace vernier::test
