@@ -118,6 +118,7 @@ ExitCode run_compare(const CompareFlags& flags) {
     throw Error(ErrorKind::usage, {}, "--bias-level", "expected a number between 0 and 1");
   std::vector<Limit> limits;
   for (const auto& text : flags.fail) limits.emplace_back(text);
+  require_separate_files({flags.picture, flags.reference}, {flags.heatmap});
   if (!flags.heatmap.empty()) check_writable_image(flags.heatmap);
 
   ComparisonOptions options = flags.options;

@@ -2,6 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
 #include "core/base/error.h"
 
 namespace vernier::apps {
@@ -44,6 +50,28 @@ void add_scene_flags(CLI::App& command, std::string& scene, ImportOptions& optio
       ->type_name("NAME|N");
   command.add_flag("--strict", options.strict, "refuse a scene that is not honoured exactly");
   command.option_defaults()->group(group);
+}
+
+void require_separate_files(const std::vector<std::string>& read, const std::vector<std::string>& written) {
+  const auto place = [](const std::string& file) {
+    std::error_code unknown;  // a place that cannot be looked at is refused when it is read or written
+    const auto path = std::filesystem::weakly_canonical(file, unknown);
+    return unknown || file.empty() ? file : path.string();
+  };
+  std::set<std::string> inputs, outputs;
+  for (const auto& file : read) inputs.insert(place(file));
+  for (const auto& file : written) {
+    if (file.empty()) continue;
+    if (inputs.contains(place(file)))
+      throw Error(ErrorKind::usage, file, {}, "is read and would be overwritten; name another output");
+    if (!outputs.insert(place(file)).second)
+      throw Error(ErrorKind::usage, file, {}, "is named for two outputs; give each a file of its own");
+  }
+}
+
+void require_readable(const std::string& file) {
+  if (!std::ifstream(file))
+    throw Error(ErrorKind::input, file, {}, fmt::format("cannot be read: {}", std::strerror(errno)));
 }
 
 void require_scene(const std::string& scene, const std::string& command) {

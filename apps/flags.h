@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "core/base/error.h"
 #include "scene/import/import.h"
@@ -35,6 +36,13 @@ void add_scene_flags(CLI::App& command, std::string& scene, ImportOptions& optio
 
 /// --threads, for ThreadLimit.
 void add_threads_flag(CLI::App& command, unsigned& threads);
+
+/// Throws Error(usage) when one of the files to be written is to be written twice, or is one of those to be
+/// read. Empty names are none.
+void require_separate_files(const std::vector<std::string>& read, const std::vector<std::string>& written);
+
+/// Throws Error(input) unless `file` can be opened.
+void require_readable(const std::string& file);
 
 /// Throws Error(usage) when no scene was given to `command`.
 void require_scene(const std::string& scene, const std::string& command);

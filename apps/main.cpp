@@ -69,8 +69,8 @@ std::string describe_extras(const CLI::App& app, const std::vector<std::string>&
     if (word.size() < 2 || word[0] != '-') continue;
     const std::string flag = word.substr(0, word.find('='));
     const auto nearest = flag.size() < 4 ? "" : nearest_name(flag, flag_names(command));
-    return fmt::format("unknown flag '{}'{}; see {} --help", flag,
-                       nearest.empty() ? "" : fmt::format(", did you mean '{}'?", nearest), prefix);
+    return fmt::format("unknown flag '{}'; {} {} --help", flag,
+                       nearest.empty() ? "see" : fmt::format("did you mean '{}'? See", nearest), prefix);
   }
   if (const auto names = subcommand_names(command); !names.empty())
     return unknown_name_message("command", extras.front(), names);

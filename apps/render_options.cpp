@@ -216,6 +216,15 @@ DisplayOptions choose_display(const RenderFlags& flags) {
   return display;
 }
 
+/// A render may go on in the checkpoint that it came from.
+void require_separate_outputs(const RenderFlags& flags) {
+  std::vector<std::string> written = flags.outputs;
+  written.insert(written.end(), {flags.stats, flags.report, flags.checkpoint});
+  std::vector<std::string> read{flags.scene, flags.environment, flags.display.config};
+  if (flags.resume != flags.checkpoint) read.push_back(flags.resume);
+  require_separate_files(read, written);
+}
+
 }  // namespace
 
 void add_environment_flags(CLI::App& command, RenderFlags& flags) {
@@ -315,6 +324,7 @@ RenderRequest check_render_flags(const RenderFlags& flags) {
   if (!flags.denoise.empty()) request.denoiser = &find_denoiser(flags.denoise);
   if (request.options.width > 0) check_picture_size(request.options, request.layers);
   request.display = choose_display(flags);
+  require_separate_outputs(flags);
   for (const auto& path : flags.outputs) check_writable_image(path);
   for (const auto& path : {flags.stats, flags.report})
     if (!path.empty()) check_writable_text_file(path);

@@ -27,6 +27,7 @@ size_t levenshtein(std::string_view a, std::string_view b) {
 
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates) {
   std::string best;
+  if (name.empty()) return best;
   size_t best_distance = std::max<size_t>(2, name.size() / 3) + 1;
   for (const auto& candidate : candidates) {
     const size_t distance = levenshtein(name, candidate);
@@ -42,10 +43,9 @@ std::string unknown_name_message(std::string_view kind, std::string_view name,
                                  std::span<const std::string> candidates) {
   std::string message = "unknown " + std::string(kind) + " '" + std::string(name) + "'";
   if (const auto nearest = nearest_name(name, candidates); !nearest.empty())
-    message += "; did you mean '" + nearest + "'?";
+    message += "; did you mean '" + nearest + "'? There are: ";
   else
-    message += ";";
-  message += " There are: ";
+    message += "; there are: ";
   for (size_t i = 0; i < candidates.size(); ++i) message += (i ? ", " : "") + candidates[i];
   if (candidates.empty()) message += "none";
   return message;

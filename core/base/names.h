@@ -10,7 +10,8 @@ namespace vernier {
 /// The candidate with the smallest Levenshtein distance to `name`; empty when none is near enough to suggest.
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates);
 
-/// "unknown KIND 'NAME'; did you mean 'NEAREST'? There are: A, B, C"
+/// "unknown KIND 'NAME'; did you mean 'NEAREST'? There are: A, B, C", or "unknown KIND 'NAME'; there are:
+/// ..."
 std::string unknown_name_message(std::string_view kind, std::string_view name,
                                  std::span<const std::string> candidates);
 

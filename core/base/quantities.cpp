@@ -90,7 +90,7 @@ double parse_seconds(std::string_view text) {
 }
 
 double parse_fraction(std::string_view text) {
-  constexpr std::string_view expected = "a part greater than zero such as 1% or 0.01";
+  constexpr std::string_view expected = "a part of the whole, above 0 and below 1, such as 1% or 0.01";
   std::string_view rest = text;
   const auto number = take_number<double>(rest);
   if (!number) refuse(text, expected);
@@ -98,7 +98,7 @@ double parse_fraction(std::string_view text) {
   const double scale = rest == "%" ? 0.01 : 1;
   if (scale == 1 && !rest.empty()) refuse(text, expected);
   const double part = *number * scale;
-  if (!(part > 0) || !std::isfinite(part)) refuse(text, expected);
+  if (!(part > 0 && part < 1)) refuse(text, expected);
   return part;
 }
 

@@ -20,7 +20,7 @@ struct PixelRect {
 /// Seconds, greater than zero, from "90s", "10m", "1.5h", "1h30m", or a bare number of seconds.
 double parse_seconds(std::string_view text);
 
-/// A part of the whole, greater than zero, from "1%", "0.5 %" or "0.01".
+/// A part of the whole, above 0 and below 1, from "1%", "0.5 %" or "0.01".
 double parse_fraction(std::string_view text);
 
 /// "1280x720"; both at least 1 and at most 65536.

@@ -6,12 +6,11 @@
 namespace vernier {
 namespace {
 
+using test::cornell_box;
 using test::ProcessResult;
 using test::run_vernier;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-const std::string cornell_box = VERNIER_SOURCE_DIR "/tests/scenes/cornell_box.gltf";
 
 /// One line on standard error that has `text`, nothing on standard output.
 void expect_refused(const ProcessResult& result, int exit_code, const std::string& text) {
@@ -43,7 +42,7 @@ TEST_P(RenderMisuse, IsOneClearLineAndWritesNothing) {
 INSTANTIATE_TEST_SUITE_P(
     CommandLine, RenderMisuse,
     testing::Values(
-        Misuse{{"--sppp", "4"}, 2, "unknown flag '--sppp', did you mean '--spp'?"},
+        Misuse{{"--sppp", "4"}, 2, "unknown flag '--sppp'; did you mean '--spp'? See vernier render --help"},
         Misuse{{"--integrater=path"}, 2, "did you mean '--integrator'?"},
         Misuse{{"-x"}, 2, "unknown flag '-x'; see vernier render --help"},
         Misuse{{"another.glb"}, 2, "'another.glb' is one argument too many"}, Misuse{{"--spp"}, 2, "--spp"},
@@ -71,7 +70,22 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{{"-o", "/picture.gif"}, 3, "picture.gif"},
         Misuse{{"-o", "/missing/picture.png"}, 3, "missing/picture.png"}, Misuse{{"-o", "/"}, 3, ""},
         Misuse{{"--stats", "/missing/stats.json"}, 3, "missing/stats.json"},
+        Misuse{{"--error", "2"}, 2, "--error: '2' is not a part of the whole, above 0 and below 1"},
+        Misuse{{"--aov", "error,,id"}, 2, "unknown layer ''; there are: error"},
+        Misuse{{"-o", "/a.png", "-o", "/./a.png"}, 2, "a.png: is named for two outputs"},
+        Misuse{{"--report", "/out.exr"}, 2, "out.exr: is named for two outputs"},
         Misuse{{"--size", "65536x65536"}, 4, "of memory"}));
+
+TEST(CommandLine, WhatIsReadIsNotOverwritten) {
+  const test::TemporaryFolder folder;
+  const std::string scene = folder.write("a.gltf", test::read_file(cornell_box));
+  expect_refused(run_vernier({"render", scene, "-o", folder.file("a.png"), "--stats", scene}), 2,
+                 "a.gltf: is read and would be overwritten");
+  const std::string picture = folder.write("b.png", "");
+  expect_refused(run_vernier({"compare", picture, picture, "--heatmap", folder.file("./b.png")}), 2,
+                 "b.png: is read and would be overwritten");
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"a.gltf", "b.png"}));
+}
 
 TEST(CommandLine, NamesWhatIsMissing) {
   expect_refused(run_vernier({}), 2, "which command?");

@@ -16,6 +16,7 @@ TEST(Names, NearestByEdits) {
   EXPECT_EQ(nearest_name("bleu", colours), "blue");
   EXPECT_EQ(nearest_name("xyzzy", colours), "");
   EXPECT_EQ(nearest_name("red", {}), "");
+  EXPECT_EQ(nearest_name("", std::vector<std::string>{"id"}), "");
   // A long name may differ in a third of its letters.
   EXPECT_EQ(nearest_name("whittedintegratxr", std::vector<std::string>{"whitted_integrator"}),
             "whitted_integrator");
@@ -25,8 +26,8 @@ TEST(Names, MessageSuggestsAndLists) {
   EXPECT_EQ(unknown_name_message("colour", "gren", colours),
             "unknown colour 'gren'; did you mean 'green'? There are: red, green, blue");
   EXPECT_EQ(unknown_name_message("colour", "xyzzy", colours),
-            "unknown colour 'xyzzy'; There are: red, green, blue");
-  EXPECT_EQ(unknown_name_message("colour", "x", {}), "unknown colour 'x'; There are: none");
+            "unknown colour 'xyzzy'; there are: red, green, blue");
+  EXPECT_EQ(unknown_name_message("colour", "x", {}), "unknown colour 'x'; there are: none");
 }
 
 TEST(Names, FindInTable) {

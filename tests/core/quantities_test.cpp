@@ -35,6 +35,15 @@ TEST(Quantities, SecondsThatMakeNoSense) {
   EXPECT_THROW(parse_seconds(""), Error);
 }
 
+TEST(Quantities, Fractions) {
+  EXPECT_DOUBLE_EQ(parse_fraction("1%"), 0.01);
+  EXPECT_DOUBLE_EQ(parse_fraction("0.5 %"), 0.005);
+  EXPECT_DOUBLE_EQ(parse_fraction("0.01"), 0.01);
+  // Who forgets the sign of per cent should hear of it.
+  for (const char* text : {"1", "5", "100%", "0", "-1%", "1%%", "1 percent", "nan", "%"})
+    expect_refused(parse_fraction, text);
+}
+
 TEST(Quantities, Sizes) {
   const PixelSize size = parse_pixel_size("1280x720");
   EXPECT_EQ(size.width, 1280);

@@ -87,7 +87,7 @@ TEST(ImportPose, ChoosesAnimationsByNameOrIndex) {
   options.animation = "0";
   expect_near(file.import(options).instances.at(0).to_world.origin, {1, 0, 0});
   options.animation = "run";
-  EXPECT_THAT(import_error(file, options), HasSubstr("unknown animation 'run'; There are: move, jump"));
+  EXPECT_THAT(import_error(file, options), HasSubstr("unknown animation 'run'; there are: move, jump"));
   file.json.erase("animations");
   EXPECT_THAT(import_error(file, options), HasSubstr("the file has no animation"));
 }
