@@ -24,7 +24,7 @@ struct Flags {
   std::string out;
 };
 
-/// The plan with everything checked that can be checked without reading a scene.
+/// The plan with everything checked that can be checked without importing a scene.
 ConvergencePlan checked_plan(const Flags& flags) {
   ConvergencePlan plan = flags.plan;
   if (plan.scenes.empty())
@@ -43,14 +43,17 @@ ConvergencePlan checked_plan(const Flags& flags) {
   plan.accelerators = accelerator_names;
   for (const auto& time : flags.times) plan.times.push_back(parse_seconds(time));
   std::sort(plan.times.begin(), plan.times.end());
+  plan.times.erase(std::unique(plan.times.begin(), plan.times.end()), plan.times.end());
+  // What is wrong with the last one should not be found out when all others have been measured.
+  for (const auto& scene : plan.scenes) require_readable(scene);
+  for (const auto& reference : plan.references) read_reference(reference);
   return plan;
 }
 
 std::string csv(const std::vector<SceneConvergence>& scenes) {
   std::string text =
       "scene,integrator,accelerator,load_seconds,build_seconds,asked_seconds,seed,seconds,samples_per_pixel,"
-      "rays,"
-      "rel_rmse,estimated_rel_rmse,estimated_low,estimated_high,unreliable\n";
+      "rays,rel_rmse,estimated_rel_rmse,estimated_low,estimated_high,unreliable\n";
   const auto quoted = [](const Json& value) {
     std::string field = "\"";
     for (const char c : value.get<std::string>()) field += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -91,6 +94,17 @@ void print_summary(const std::vector<SceneConvergence>& scenes) {
   fmt::print("{}", text_table(rows));
 }
 
+/// "2 scenes, 4 candidates each, 5 seeds: 10 m 00 s of rendering"
+std::string announcement(const ConvergencePlan& plan) {
+  double seconds = 0;
+  for (const double time : plan.times) seconds += time;
+  const size_t candidates = plan.integrators.size() * plan.accelerators.size();
+  seconds *= double(plan.scenes.size() * candidates) * plan.seeds;
+  return fmt::format("{} scenes, {} candidates each, {} seeds: {} of rendering{}", plan.scenes.size(),
+                     candidates, plan.seeds, format_seconds(seconds),
+                     plan.references.empty() ? ", and the references" : "");
+}
+
 ExitCode run_bench_convergence(const Flags& flags, const Program& program) {
   const ConvergencePlan plan = checked_plan(flags);
   const fs::path folder(flags.out);
@@ -105,14 +119,16 @@ ExitCode run_bench_convergence(const Flags& flags, const Program& program) {
   Json report = bench_header(program);
   report["times"] = plan.times;
   report["seeds"] = plan.seeds;
+  fmt::print(stderr, "{}\n", announcement(plan));
   for (size_t i = 0; i < plan.scenes.size(); ++i) {
     scenes.push_back(measure_convergence(plan, i, log));
     report["scenes"].push_back(scenes.back().json);
+    // After each scene: who stops a long bench keeps what has been measured.
+    write_text_file(file("convergence.csv"), csv(scenes));
+    write_text_file(file("convergence.json"),
+                    report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    write_text_file(file("convergence.html"), convergence_page(report, scenes));
   }
-  write_text_file(file("convergence.csv"), csv(scenes));
-  write_text_file(file("convergence.json"),
-                  report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-  write_text_file(file("convergence.html"), convergence_page(report, scenes));
   print_summary(scenes);
   return ExitCode::done;
 }

@@ -24,6 +24,9 @@ const std::atomic<bool> never_stop{false};
 
 Reference read_reference(const std::string& file) {
   const LayeredImage layers = read_layers(file);
+  if (!layers.linear)
+    throw Error(ErrorKind::input, file, {},
+                "holds display values; expected a scene-linear reference, as in .exr");
   Reference reference{
       layers.rgb(), 0, layers.layer("error").value_or(Image()), {{"file", file}, {"rel_rmse", nullptr}}};
   const auto error = layers.metadata.find("vernier:relRmse");

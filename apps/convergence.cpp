@@ -163,11 +163,17 @@ Json fit_json(const std::vector<ErrorAt>& points) {
 Json candidate_json(const Candidate& candidate, const ConvergencePlan& plan, const Reference& reference) {
   Json points = Json::array();
   std::vector<ErrorAt> medians;
+  double most_samples = 0;
   for (size_t t = 0; t < plan.times.size(); ++t) {
     points.push_back(point_json(plan.times[t], candidate.runs[t]));
-    // An error as small as the reference's comes out as nothing, which has no logarithm.
-    const ErrorAt middle{points.back()["seconds"], points.back()["rel_rmse"]["median"]};
-    if (middle.error > 0) medians.push_back(middle);
+    const Json& point = points.back();
+    // An error as small as the reference's comes out as nothing, which has no logarithm. A time too short for
+    // the first pass gives the picture of the one before, and says nothing of how the error falls.
+    const ErrorAt middle{point["seconds"], point["rel_rmse"]["median"]};
+    const double samples = point["samples_per_pixel"];
+    if (!(middle.error > 0 && samples > most_samples)) continue;
+    most_samples = samples;
+    medians.push_back(middle);
   }
   Json systematic = nullptr;
   if (plan.seeds > 1) {

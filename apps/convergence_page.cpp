@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -26,7 +27,13 @@ std::string seconds(const Json& value) {
 }
 
 std::string figure(const Json& value) {
-  return value.is_number() ? fmt::format("{:.3g}", value.get<double>()) : "-";
+  return value.is_number() ? fmt::format("{:.4g}", value.get<double>()) : "-";
+}
+
+/// Two decimals; what rounds to nought has no sign.
+std::string slope(const Json& value) {
+  const double rounded = std::round(100 * value.get<double>()) / 100;
+  return fmt::format("{:.2f}", rounded == 0 ? 0 : rounded);
 }
 
 std::string file_name(const Json& scene) {
@@ -43,8 +50,8 @@ std::vector<std::string> summary_row(const Json& scene, const Json& candidate) {
   std::vector<std::string> row{file_name(scene),
                                name(candidate),
                                percent(last["rel_rmse"]["median"]),
-                               fit.is_null() ? "-" : fmt::format("{:.2f}", fit["slope"].get<double>()),
-                               fit.is_null() ? "-" : fmt::format("{:.2f}", fit["last_slope"].get<double>()),
+                               fit.is_null() ? "-" : slope(fit["slope"]),
+                               fit.is_null() ? "-" : slope(fit["last_slope"]),
                                fit.is_null() ? "-" : percent(fit["floor"]),
                                percent(candidate["systematic"]),
                                figure(last["efficiency"])};
@@ -61,8 +68,8 @@ void add_summary(HtmlPage& page, const Json& report) {
                "last slope", "floor", "systematic", "efficiency"},
               {}};
   if (report["times"].size() > 1)
-    for (const char* error : {"10 %", "5 %", "2 %", "1 %"})
-      table.columns.push_back(std::string("to ") + error);
+    for (const char* error : {"10", "5", "2", "1"})  // with spaces that do not break
+      table.columns.push_back(fmt::format("to\u00a0{}\u00a0%", error));
   for (const Json& scene : report["scenes"])
     for (const Json& candidate : scene["candidates"]) table.rows.push_back(summary_row(scene, candidate));
   page.table(table);
@@ -71,8 +78,7 @@ void add_summary(HtmlPage& page, const Json& report) {
       "variance of the reference taken off; the median over seeds.");
   page.paragraph(
       "Slope is that of error over time on logarithmic axes. Sampling without bias gives -1/2; a slope "
-      "nearer "
-      "to nought at the end means that the curve flattens.");
+      "nearer to nought at the end means that the curve flattens.");
   page.paragraph(
       "Floor is the error at which the curve would flatten, fitted as error^2 = floor^2 + variance / time; "
       "systematic is what all seeds have in common after the longest time. Both are bias, or what the "

@@ -6,14 +6,16 @@
   function trimmed(value) { return String(Number(value.toPrecision(3))); }
   function percent(value) { return trimmed(100 * value) + ' %'; }
 
-  // Labels at 1, 2 and 5 times a power of ten, or at every digit when that leaves too few; none at the ends of
-  // the axis, which are not round.
-  function hasDigit(value, digits) { return digits.test(Number(value.toPrecision(6)).toExponential()); }
-  function label(format) {
-    return function (value, index, ticks) {
-      const few = ticks.filter(function (tick) { return hasDigit(tick.value, /^[125]e/); }).length < 3;
-      return hasDigit(value, few ? /^[1-9]e/ : /^[125]e/) ? format(value) : '';
-    };
+  // Ticks at 1, 2 and 5 times a power of ten, at every digit where that leaves too few, or at the powers alone
+  // where it leaves too many; none at the ends of the axis, which are not round.
+  function roundTicks(ticks) {
+    function withDigits(digits) {
+      return ticks.filter(function (tick) {
+        return digits.test(Number(tick.value.toPrecision(6)).toExponential());
+      });
+    }
+    const usual = withDigits(/^[125]e/);
+    return usual.length < 3 ? withDigits(/^[1-9]e/) : usual.length > 9 ? withDigits(/^1e/) : usual;
   }
 
   function axis(title, values, format) {
@@ -23,7 +25,8 @@
       min: Math.min.apply(null, values) / margin,
       max: Math.max.apply(null, values) * margin,
       title: { display: true, text: title },
-      ticks: { callback: label(format), maxRotation: 0 },
+      afterBuildTicks: function (scale) { scale.ticks = roundTicks(scale.ticks); },
+      ticks: { callback: format, autoSkip: false, maxRotation: 0 },
       grid: { color: '#e4e8ee' }
     };
   }
@@ -37,10 +40,12 @@
     }, options);
   }
 
-  function datasets(curve, color) {
+  // Colours come again after eight curves, dotted.
+  function datasets(curve, number) {
+    const color = curve.guide ? '#7a828e' : colors[number % colors.length];
     const line = {
       label: curve.name, data: points(curve.points), borderColor: color, backgroundColor: color,
-      borderWidth: 2, pointRadius: 3, tension: 0
+      borderWidth: 2, borderDash: number < colors.length ? [] : [2, 3], pointRadius: 3, tension: 0
     };
     if (curve.guide) return [Object.assign(line, { borderDash: [5, 4], borderWidth: 1, pointRadius: 0 })];
     if (curve.band.length === 0) return [line];
@@ -52,7 +57,7 @@
     const xs = [];
     let sets = [], ys = [], next = 0;
     chart.curves.forEach(function (curve) {
-      sets = sets.concat(datasets(curve, curve.guide ? '#7a828e' : colors[next++ % colors.length]));
+      sets = sets.concat(datasets(curve, curve.guide ? 0 : next++));
       curve.points.forEach(function (point) { xs.push(point[0]); ys.push(point[1]); });
       curve.band.forEach(function (ends) { ys = ys.concat(ends.filter(function (v) { return v > 0; })); });
     });

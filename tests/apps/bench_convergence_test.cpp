@@ -11,10 +11,9 @@ namespace vernier {
 namespace {
 
 using nlohmann::json;
+using test::cornell_box;
 using test::run_vernier;
 using testing::HasSubstr;
-
-const std::string cornell_box = VERNIER_SOURCE_DIR "/tests/scenes/cornell_box.gltf";
 
 test::ProcessResult bench(std::vector<std::string> more) {
   more.insert(more.begin(), {"bench", "convergence"});
@@ -62,6 +61,33 @@ TEST(BenchConvergence, BiasFlattensTheCurve) {
   const double error = whitted["points"].back()["rel_rmse"]["median"];
   EXPECT_NEAR(whitted["systematic"].get<double>(), error, 0.1 * error);
   EXPECT_LT(path["systematic"].get<double>(), error);
+}
+
+// Two samples a pixel are taken however short the time is.
+TEST(BenchConvergence, TimesTooShortForMoreSamplesHaveNoSlope) {
+  const test::TemporaryFolder folder;
+  const auto result = bench({cornell_box, "--times", "0.000001,0.000002,0.000002", "--seeds", "1", "--size",
+                             "12x12", "--reference-spp", "64", "--out", folder.file("out")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json report = json::parse(test::read_file(folder.file("out/convergence.json")));
+  EXPECT_EQ(report["times"].size(), 2u);
+  EXPECT_TRUE(report["scenes"][0]["candidates"][0]["fit"].is_null());
+}
+
+TEST(BenchConvergence, FilesAreLookedAtBeforeAnythingIsMeasured) {
+  const test::TemporaryFolder folder;
+  const auto missing = bench({cornell_box, folder.file("none.glb"), "--out", folder.file("out")});
+  EXPECT_EQ(missing.exit_code, 3);
+  EXPECT_THAT(missing.err_lines(), testing::ElementsAre(HasSubstr("none.glb: cannot be read: No such file")));
+  ASSERT_EQ(
+      run_vernier({"render", cornell_box, "-o", folder.file("a.png"), "--size", "8x8", "--spp", "1", "-q"})
+          .exit_code,
+      0);
+  const auto display = bench({cornell_box, "--reference", folder.file("a.png"), "--out", folder.file("out")});
+  EXPECT_EQ(display.exit_code, 3);
+  EXPECT_THAT(display.err_lines(),
+              testing::ElementsAre(HasSubstr("a.png: holds display values; expected a scene-linear")));
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"a.png"});
 }
 
 TEST(BenchConvergence, MisuseIsOneClearLine) {
