@@ -1,10 +1,9 @@
 #include "apps/render_report.h"
 
 #include <fmt/format.h>
-
 #include <fmt/ranges.h>
-#include <cmath>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "apps/machine.h"
@@ -34,6 +33,15 @@ std::string_view name(StopReason reason) {
   return "";
 }
 
+/// A figure that JSON can hold: null while it is not known.
+Json known(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json asked_json(const RenderOptions& options) {
+  return {{"samples_per_pixel", options.spp > 0 ? Json(options.spp) : Json(nullptr)},
+          {"seconds", known(options.time_limit)},
+          {"rel_rmse", options.target_error > 0 ? Json(options.target_error) : Json(nullptr)}};
+}
+
 Json picture_json(const RenderReport& report, const RenderFlags& flags, const RenderResult& result) {
   Json picture = {{"width", report.options.width},
                   {"height", report.options.height},
@@ -43,14 +51,12 @@ Json picture_json(const RenderReport& report, const RenderFlags& flags, const Re
                   {"max_depth", flags.integrator_options.max_depth},
                   {"samples", result.samples},
                   {"samples_per_pixel", samples_per_pixel(result)},
+                  {"asked", asked_json(report.options)},
                   {"stopped_by", name(result.reason)},
                   {"files", flags.outputs}};
   if (report.options.crop.width > 0) picture["crop"] = crop_text(report.options.crop);
   return picture;
 }
-
-/// A figure that JSON can hold: null while it is not known.
-Json known(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json error_json(const ErrorEstimate& error) {
   return {{"rel_rmse", known(error.rel_rmse)},
@@ -88,6 +94,16 @@ Json bad_samples_json(const RenderResult& result) {
   for (const BadSample& sample : result.bad_sample_examples)
     examples.push_back({{"x", sample.x}, {"y", sample.y}, {"half", sample.half}, {"index", sample.index}});
   return {{"count", result.bad_samples}, {"examples", examples}};
+}
+
+/// What was asked for and not reached, if anything.
+std::string shortfall(const RenderReport& report, const RenderResult& result) {
+  if (result.reason == StopReason::interrupted) return "; interrupted";
+  const double asked = report.options.target_error;
+  if (asked == 0 || result.error.rel_rmse <= asked) return "";
+  return fmt::format("; {} before the error of {:.3g} %",
+                     result.reason == StopReason::time ? "time was up" : "all samples were taken",
+                     100 * asked);
 }
 
 }  // namespace
@@ -171,8 +187,7 @@ std::string scene_lines(const RenderReport& report) {
   const SceneCounts& counts = report.counts;
   return fmt::format(
              "scene: {} triangles in {} meshes, {} in {} instances; {} materials, {} textures ({}), {} "
-             "punctual "
-             "lights, {} emissive triangles\n",
+             "punctual lights, {} emissive triangles\n",
              counts.triangles, counts.meshes, counts.instanced_triangles, counts.instances, counts.materials,
              counts.textures, format_bytes(double(counts.texture_bytes)), counts.punctual_lights,
              counts.emissive_triangles) +
@@ -185,11 +200,11 @@ std::string scene_lines(const RenderReport& report) {
 }
 
 std::string summary_line(const RenderReport& report, const RenderFlags& flags, const RenderResult& result) {
-  return fmt::format("wrote {}: {}x{}, {:.4g} spp{}, load {}, build {}, render {}, {} rays/s",
+  return fmt::format("wrote {}: {}x{}, {:.4g} spp{}, load {}, build {}, render {}, {} rays/s{}",
                      fmt::join(flags.outputs, ", "), result.film.width(), result.film.height(),
                      samples_per_pixel(result), error_text(result.error), format_seconds(report.load_seconds),
                      format_seconds(report.build_seconds), format_seconds(result.seconds),
-                     format_count(rate(total(result.rays), result.seconds)));
+                     format_count(rate(total(result.rays), result.seconds)), shortfall(report, result));
 }
 
 }  // namespace vernier::apps

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -30,10 +31,12 @@ std::string count(const Json& value) { return format_count(value.get<double>());
 
 std::string stopped_by(const Json& stats) {
   const auto& reason = stats["picture"]["stopped_by"];
-  if (reason == "samples") return "all samples taken";
-  if (reason == "time") return "time limit";
   if (reason == "error") return "error reached";
-  return "interrupted";
+  if (reason == "interrupted") return "interrupted";
+  const std::string text = reason == "samples" ? "all samples taken" : "time limit";
+  const Json& error = stats["picture"]["asked"]["rel_rmse"];
+  const bool missed = error.is_number() && !(stats["error"]["rel_rmse"] <= error);
+  return !missed ? text : fmt::format("{}, before the error of {}", text, percent(error));
 }
 
 /// Square root of the channels' mean squared relative standard error, as --error counts it.
@@ -118,10 +121,11 @@ void add_error_maps(HtmlPage& page, const Film& film, const std::optional<Denois
   const Image error = shrink(relative_error(film.image(), layers.standard_error), longest_map);
   const Image counts = shrink(sample_counts(film), longest_map);
   const double scale = round_scale(error);
-  std::vector<Figure> figures{
-      map_figure(error, scale, "Estimated relative standard error", true),
-      map_figure(counts, round_scale(counts), "Samples", false),
-      {colormap(shrink(layers.unreliable, longest_map)), "Pixels not to be trusted: pale", false}};
+  std::vector<Figure> figures{map_figure(error, scale, "Estimated relative standard error", true)};
+  const auto [fewest, most] = std::minmax_element(counts.values.begin(), counts.values.end());
+  if (*fewest < *most) figures.push_back(map_figure(counts, round_scale(counts), "Samples", false));
+  figures.push_back(
+      {colormap(shrink(layers.unreliable, longest_map)), "Pixels not to be trusted: pale", false});
   if (denoised && denoised->pixel_error) {
     const Image left = shrink(relative_error(denoised->picture, *denoised->pixel_error), longest_map);
     figures.insert(figures.begin(), map_figure(left, scale, "The same after denoising, blur included", true));
@@ -130,8 +134,7 @@ void add_error_maps(HtmlPage& page, const Film& film, const std::optional<Denois
   page.figures(figures);
   page.paragraph(
       "The error is that of sampling only. A pixel is not to be trusted when what is known of it comes from "
-      "too "
-      "few samples: its error may be larger than estimated.");
+      "too few samples: its error may be larger than estimated.");
 }
 
 void add_convergence(HtmlPage& page, const Json& stats) {
@@ -154,8 +157,9 @@ void add_convergence(HtmlPage& page, const Json& stats) {
     return;
   }
   over_samples.band = over_time.band;
-  page.charts({{"seconds of rendering", "relative RMSE", {over_time, square_root_guide(over_time)}},
-               {"samples a pixel", "relative RMSE", {over_samples, square_root_guide(over_samples)}}});
+  if (table.rows.size() > 1)
+    page.charts({{"seconds of rendering", "relative RMSE", {over_time, square_root_guide(over_time)}},
+                 {"samples a pixel", "relative RMSE", {over_samples, square_root_guide(over_samples)}}});
   page.table(table);
 }
 

@@ -11,10 +11,9 @@ namespace vernier {
 namespace {
 
 using nlohmann::json;
+using test::cornell_box;
 using test::run_vernier;
 using testing::HasSubstr;
-
-const std::string cornell_box = VERNIER_SOURCE_DIR "/tests/scenes/cornell_box.gltf";
 
 TEST(Report, HoldsWhatTheStatisticsHold) {
   const test::TemporaryFolder folder;
@@ -68,6 +67,22 @@ TEST(Report, ShowsTheDenoisedPictureAndTheNoisyOne) {
   const auto percent = [](double part) { return fmt::format("{:.3g} %", 100 * part); };
   EXPECT_THAT(page, HasSubstr("Denoised by nlm: estimated error " + percent(stats["denoised"]["rel_rmse"])));
   EXPECT_THAT(page, HasSubstr("As rendered: estimated error " + percent(stats["error"]["rel_rmse"])));
+}
+
+TEST(Report, SaysWhatWasAskedForAndMissed) {
+  const test::TemporaryFolder folder;
+  const auto result =
+      run_vernier({"render", cornell_box, "-o", folder.file("a.png"), "--size", "24x16", "--spp", "16",
+                   "--error", "0.1%", "--stats", folder.file("a.json"), "--report", folder.file("a.html")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("; all samples were taken before the error of 0.1 %\n"));
+  const std::string page = test::read_file(folder.file("a.html"));
+  EXPECT_THAT(page, HasSubstr("ended by</th><td>all samples taken, before the error of 0.1 %"));
+  // One look makes no curve, and the same number of samples everywhere no map.
+  EXPECT_THAT(page, testing::Not(HasSubstr("<canvas")));
+  EXPECT_EQ(test::inline_pictures(page).size(), 3u);
+  const json asked = json::parse(test::read_file(folder.file("a.json")))["picture"]["asked"];
+  EXPECT_EQ(asked, (json{{"samples_per_pixel", 16}, {"seconds", nullptr}, {"rel_rmse", 0.001}}));
 }
 
 TEST(Report, NamesCannotBreakThePage) {
