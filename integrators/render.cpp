@@ -25,6 +25,11 @@ double excess(const ErrorEstimate& error, double asked) {
   return std::max(error.rel_rmse, error.high / 1.1) / asked;
 }
 
+/// Of the pass after `done` samples a pixel. Passes double at first, so that a picture comes soon and
+/// stratified sets of samples are completed; later ones are short enough to look often at clock and target,
+/// long enough that planning them costs nothing.
+uint32_t pass_size(uint32_t done) { return std::clamp(done, 2u, std::max(pilot, done / 4)); }
+
 /// One render call. Tiles write disjoint pixels of the film; totals are merged once a tile.
 class Renderer {
  public:
@@ -75,11 +80,9 @@ class Renderer {
   }
   bool out_of_time() const { return seconds() >= options_.time_limit; }
 
-  /// Passes double at first, so that a picture comes soon and stratified sets of samples are completed; later
-  /// ones are short enough to look often at clock and target, long enough that planning them costs nothing.
-  /// They are planned without regard to --spp, which may end the render in the midst of one.
+  /// Without regard to --spp, which may end the render in the midst of a pass.
   void plan_pass() {
-    const uint32_t size = std::clamp(state_.done, 2u, std::max(pilot, state_.done / 4));
+    const uint32_t size = pass_size(state_.done);
     const bool may_adapt = options_.adaptive && state_.done >= pilot;
     state_.pass = may_adapt ? SamplePlan::adaptive(result().film, state_.guides, size)
                             : SamplePlan::uniform(result().film, size);
@@ -222,10 +225,12 @@ class Renderer {
     p.fraction = p.seconds / options_.time_limit;
     if (options_.spp > 0) p.fraction = std::max(p.fraction, p.samples_per_pixel / options_.spp);
     if (options_.target_error > 0 && !result().convergence.empty()) {
-      // Squared error falls as one over the samples.
+      // Squared error falls as one over the samples, and is looked at where a pass ends.
       const auto& last = result().convergence.back();
       const double needed = last.samples_per_pixel * square(excess(last.error, options_.target_error));
-      p.fraction = std::max(p.fraction, p.samples_per_pixel / needed);
+      double end = state_.done + state_.pass.size();
+      while (end < needed && end < 1e9) end += pass_size(uint32_t(end));
+      p.fraction = std::max(p.fraction, p.samples_per_pixel / end);
     }
     p.fraction = std::min(1.0, p.fraction);
     return p;
