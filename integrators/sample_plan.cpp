@@ -1,8 +1,85 @@
 #include "integrators/sample_plan.h"
 
+#include <array>
+
 #include "core/base/parallel.h"
 
 namespace vernier {
+namespace {
+
+/// Samples of one half in a pass of `size` samples a pixel, by the other half's guide.
+class HalfPlan {
+ public:
+  HalfPlan(const Film& film, int which, const SampleGuide& guide, uint32_t size)
+      : needs_(guide.needs()),
+        done_(needs_.size()),
+        fewest_(std::floor(size / 8.0)),
+        // At most eight times the even share, so that a plan made on little evidence does not spend
+        // everything.
+        most_(std::min(size * 4.0, 65535.0)) {
+    for (size_t i = 0; i < done_.size(); ++i) {
+      done_[i] = film.samples(int(i % film.width()), int(i / film.width()), which);
+      done_sum_ += done_[i];
+      need_sum_ += needs_[i];
+    }
+  }
+
+  bool is_even() const { return !(need_sum_ > 0); }
+  /// What every pixel gets at least.
+  double fewest() const { return fewest_; }
+
+  /// Of a pass that every pixel in need could use as far as it may: where few are, the rest of a larger one
+  /// would have no place.
+  uint32_t largest_size() const {
+    double samples = 0;
+    for (const float need : needs_) samples += need > 0 ? most_ : fewest_;
+    return uint32_t(std::min(2 * samples / double(needs_.size()), 1e9));
+  }
+
+  /// Sets this half's counts, on average half of `size`.
+  void fill(std::vector<uint16_t>& counts, int which, uint32_t size) const {
+    const double factor = find_factor(size / 2.0 * double(needs_.size()));
+    // Fractions are carried along the row of pixels so that the total is met.
+    double carried = 0;
+    for (size_t i = 0; i < needs_.size(); ++i) {
+      carried += wanted(i, factor) - fewest_;
+      const double whole = std::floor(carried);
+      carried -= whole;
+      counts[i * Film::halves + size_t(which)] = uint16_t(std::min(fewest_ + whole, 65535.0));
+    }
+  }
+
+ private:
+  /// The best total of a pixel is in proportion to its need (Neyman allocation). Where that has been passed
+  /// already, or the bounds bite, the samples go elsewhere, by way of the factor.
+  double wanted(size_t i, double factor) const {
+    return std::clamp(factor * needs_[i] - done_[i], fewest_, most_);
+  }
+
+  /// The factor that spends `budget`, to a thousandth. Steps in proportion find it in a few rounds, unless
+  /// the need is that of few pixels; then it is bracketed and halved.
+  double find_factor(double budget) const {
+    double factor = (done_sum_ + budget) / need_sum_, below = 0, above = 0;
+    for (int round = 0; round < 200; ++round) {
+      double spent = 0;
+      for (size_t i = 0; i < needs_.size(); ++i) spent += wanted(i, factor);
+      if (std::abs(spent - budget) < 0.001 * budget) break;
+      (spent < budget ? below : above) = factor;
+      if (round < 20)
+        factor *= std::clamp(1 + (budget - spent) / (done_sum_ + budget), 0.5, 2.0);
+      else
+        factor = above > 0 ? (below + above) / 2 : 2 * factor;
+    }
+    return factor;
+  }
+
+  std::vector<float> needs_;
+  std::vector<double> done_;  ///< samples that the half has
+  double fewest_, most_;
+  double done_sum_ = 0, need_sum_ = 0;
+};
+
+}  // namespace
 
 float SampleGuide::squared_need(const Cell& cell) {
   if (cell.count < 2) return 0;
@@ -44,46 +121,15 @@ SamplePlan SamplePlan::uniform(const Film& film, uint32_t size) {
 
 SamplePlan SamplePlan::adaptive(const Film& film, std::span<const SampleGuide, Film::halves> guides,
                                 uint32_t size) {
+  const std::array<HalfPlan, Film::halves> halves{HalfPlan(film, 0, guides[1], size),
+                                                  HalfPlan(film, 1, guides[0], size)};
+  if (halves[0].is_even() || halves[1].is_even()) return uniform(film, size);
   Numbers plan;
   plan.width = film.width();
-  plan.size = size;
-  const size_t pixels = size_t(film.width()) * film.height();
-  plan.counts.resize(pixels * Film::halves);
-  const double per_half = size / 2.0;
-  // At most eight times the even share, so that a plan made on little evidence does not spend everything.
-  const double fewest = std::floor(per_half / 4), most = per_half * 8;
-  plan.fewest = uint32_t(fewest);
-  for (int half = 0; half < Film::halves; ++half) {
-    const std::vector<float> needs = guides[size_t(1 - half)].needs();
-    double need_sum = 0, done_sum = 0;
-    for (size_t i = 0; i < pixels; ++i) {
-      need_sum += needs[i];
-      done_sum += film.samples(int(i % film.width()), int(i / film.width()), half);
-    }
-    if (!(need_sum > 0)) return uniform(film, size);
-    const double budget = per_half * double(pixels);
-    // The best total of a pixel is in proportion to its need (Neyman allocation). Where that has been passed
-    // already, or the bounds bite, the budget goes elsewhere: a few rounds find the factor that spends it.
-    double factor = (done_sum + budget) / need_sum;
-    const auto wanted = [&](size_t i) {
-      const double done = film.samples(int(i % film.width()), int(i / film.width()), half);
-      return std::clamp(factor * needs[i] - done, fewest, most);
-    };
-    for (int round = 0; round < 20; ++round) {
-      double spent = 0;
-      for (size_t i = 0; i < pixels; ++i) spent += wanted(i);
-      if (std::abs(spent - budget) < 0.001 * budget) break;
-      factor *= std::clamp(1 + (budget - spent) / (done_sum + budget), 0.5, 2.0);
-    }
-    // Fractions are carried along the row of pixels so that the total is met.
-    double carried = 0;
-    for (size_t i = 0; i < pixels; ++i) {
-      carried += wanted(i) - fewest;
-      const double whole = std::floor(carried);
-      carried -= whole;
-      plan.counts[i * Film::halves + size_t(half)] = uint16_t(std::min(fewest + whole, 65535.0));
-    }
-  }
+  plan.fewest = uint32_t(halves[0].fewest());
+  plan.size = std::min({size, halves[0].largest_size(), halves[1].largest_size()});
+  plan.counts.resize(size_t(film.width()) * film.height() * Film::halves);
+  for (int half = 0; half < Film::halves; ++half) halves[size_t(half)].fill(plan.counts, half, plan.size);
   return SamplePlan(std::move(plan));
 }
 

@@ -67,7 +67,8 @@ class SamplePlan {
   static SamplePlan uniform(const Film& film, uint32_t size);
 
   /// On average `size` more samples a pixel, more where they lower the image's relative error most; a
-  /// quarter of them is spread evenly, for the guides. The number for one half depends on the other half's
+  /// quarter of them is spread evenly, for the guides. A smaller pass when so few pixels need samples that
+  /// these cannot take so many. The number for one half depends on the other half's
   /// guide only, so that neither half's mean is biased by its own luck (Kirk and Arvo 1991, "Unbiased
   /// Sampling Techniques for Image Synthesis").
   static SamplePlan adaptive(const Film& film, std::span<const SampleGuide, Film::halves> guides,
