@@ -128,8 +128,7 @@ std::string crop_text(const Crop& crop) {
 Metadata result_metadata(const RenderResult& result) {
   Metadata metadata = {{"Software", "vernier " VERNIER_VERSION},
                        {"vernier:samples", fmt::format("{}", result.samples)},
-                       {"vernier:samplesPerPixel", fmt::format("{}", samples_per_pixel(result))},
-                       {"vernier:seconds", fmt::format("{:.3f}", result.seconds)}};
+                       {"vernier:samplesPerPixel", fmt::format("{}", samples_per_pixel(result))}};
   if (std::isfinite(result.error.rel_rmse)) {
     metadata["vernier:relRmse"] = fmt::format("{:.6g}", result.error.rel_rmse);
     metadata["vernier:relRmse95"] = fmt::format("{:.6g} {:.6g}", result.error.low, result.error.high);

@@ -133,6 +133,8 @@ void write_exr(const std::string& path, const Image& image, const std::vector<st
   // Red, green, blue and white of Rec.709 (ITU-R BT.709-6, 1.3 and 1.4).
   const float chromaticities[8] = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
   spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities);
+  // An empty date is left out; without it OpenImageIO writes the time of day, and no two files are alike.
+  spec.attribute("DateTime", "");
   set_metadata(spec, metadata, false);
   TemporaryFile file(path);
   write_image(path, file.path(), "openexr", spec, image.values.data(), nullptr);
