@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/documented_fields.h"
 #include "tests/support/html.h"
 #include "tests/support/process.h"
 
@@ -31,6 +32,9 @@ TEST(BenchConvergence, PageTableAndDataAgree) {
   const std::string csv = test::read_file(out + "/convergence.csv");
   EXPECT_EQ(json::parse(test::script_data(page, "convergence")), report);
   EXPECT_TRUE(test::is_self_contained(page));
+  json own = report;
+  own["scenes"][0].erase("counts");  // as in stats.md
+  EXPECT_THAT(test::undocumented_fields(own, "bench.md", {"built_with", "machine"}), testing::IsEmpty());
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * 2 * 2);
 
   const json& scene = report["scenes"][0];

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/support/documented_fields.h"
 #include "tests/support/html.h"
 #include "tests/support/process.h"
 
@@ -26,6 +27,7 @@ TEST(Report, HoldsWhatTheStatisticsHold) {
   const json stats = json::parse(test::read_file(folder.file("a.json")));
   EXPECT_EQ(json::parse(test::script_data(page, "stats")), stats);
   ASSERT_GE(stats["convergence"].size(), 2u);
+  EXPECT_THAT(test::undocumented_fields(stats, "stats.md", {"built_with", "shares"}), testing::IsEmpty());
 
   const json over_time = json::parse(test::script_data(page, "chart-1"));
   const json over_samples = json::parse(test::script_data(page, "chart-2"));
@@ -64,6 +66,7 @@ TEST(Report, ShowsTheDenoisedPictureAndTheNoisyOne) {
   const std::string page = test::read_file(folder.file("a.html"));
   EXPECT_EQ(test::inline_pictures(page).size(), 6u);  // one more picture, and one more map of its error
   const json stats = json::parse(test::read_file(folder.file("a.json")));
+  EXPECT_THAT(test::undocumented_fields(stats["denoised"], "stats.md"), testing::IsEmpty());
   const auto percent = [](double part) { return fmt::format("{:.3g} %", 100 * part); };
   EXPECT_THAT(page, HasSubstr("Denoised by nlm: estimated error " + percent(stats["denoised"]["rel_rmse"])));
   EXPECT_THAT(page, HasSubstr("As rendered: estimated error " + percent(stats["error"]["rel_rmse"])));
