@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "apps/build_id.h"
 #include "apps/flags.h"
 #include "core/base/text_file.h"
 #include "scene/import/asset_files.h"
@@ -103,7 +104,14 @@ RenderHooks Checkpointing::hooks(const RenderRequest& request, const RenderRepor
   RenderHooks hooks;
   if (flags_.checkpoint.empty() && !from_.state) return hooks;
   identity_ = identity_of(request, report, camera);
+  const std::string build = build_id();
   if (from_.state) {
+    if (take(from_.identity, "build") != build)
+      log_.add({Notice::Severity::warning,
+                {},
+                fmt::format("{} was written by another build of Vernier; if that one took other samples, the "
+                            "picture will not be the same as if it had never stopped",
+                            flags_.resume)});
     require_same_render(flags_.resume, from_.identity, identity_);
     hooks.from = std::move(from_.state);
     log_.add({Notice::Severity::info,
@@ -111,6 +119,7 @@ RenderHooks Checkpointing::hooks(const RenderRequest& request, const RenderRepor
               fmt::format("going on from {}: {:.4g} samples a pixel and {} are done", flags_.resume,
                           resumed_->samples_per_pixel, format_seconds(resumed_->seconds))});
   }
+  identity_.emplace_back("build", build);
   if (!flags_.checkpoint.empty()) {
     hooks.save = [this](const RenderState& state) { write(state); };
     hooks.save_interval = parse_seconds(flags_.checkpoint_every);

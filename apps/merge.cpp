@@ -27,23 +27,22 @@ struct MergeFlags {
 /// Renders of one picture by different seeds, put together.
 struct Merged {
   std::optional<RenderResult> result;
-  RenderIdentity identity;  ///< without the seed
+  RenderIdentity identity;  ///< without seed and build
   std::map<uint64_t, std::string> files_by_seed;
 
   void add(const std::string& path) {
     Checkpoint checkpoint = read_checkpoint(path);
-    const auto seed = std::find_if(checkpoint.identity.begin(), checkpoint.identity.end(),
-                                   [](const auto& pair) { return pair.first == "seed"; });
-    if (seed == checkpoint.identity.end()) throw Error(ErrorKind::input, path, {}, "does not say its seed");
+    const std::string seed = take(checkpoint.identity, "seed");
+    if (seed.empty()) throw Error(ErrorKind::input, path, {}, "does not say its seed");
+    take(checkpoint.identity, "build");  // machines may have their own
     uint64_t number = 0;
-    std::from_chars(seed->second.data(), seed->second.data() + seed->second.size(), number);
+    std::from_chars(seed.data(), seed.data() + seed.size(), number);
     const auto [same, is_new] = files_by_seed.emplace(number, path);
     if (!is_new)
       throw Error(ErrorKind::input, path, {},
                   fmt::format("has the seed {} of {}, so both hold the same samples; render parts with "
                               "different --seed",
-                              seed->second, same->second));
-    checkpoint.identity.erase(seed);
+                              seed, same->second));
     RenderResult& more = checkpoint.state->so_far;
     if (!result) {
       identity = std::move(checkpoint.identity);

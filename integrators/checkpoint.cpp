@@ -216,6 +216,15 @@ Checkpoint read_checkpoint(const std::string& path) {
   return checkpoint;
 }
 
+std::string take(RenderIdentity& identity, const std::string& name) {
+  const auto found =
+      std::find_if(identity.begin(), identity.end(), [&](const auto& pair) { return pair.first == name; });
+  if (found == identity.end()) return {};
+  std::string value = std::move(found->second);
+  identity.erase(found);
+  return value;
+}
+
 void require_same_render(const std::string& path, const RenderIdentity& checkpoint,
                          const RenderIdentity& wanted) {
   const auto value = [](const RenderIdentity& identity, const std::string& name) {

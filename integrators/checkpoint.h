@@ -15,6 +15,9 @@ namespace vernier {
 /// once. Two renders with equal ones may go on from each other.
 using RenderIdentity = std::vector<std::pair<std::string, std::string>>;
 
+/// Removes what is called `name` and returns its value; empty where there is none.
+std::string take(RenderIdentity& identity, const std::string& name);
+
 struct Checkpoint {
   RenderIdentity identity;
   std::shared_ptr<RenderState> state;

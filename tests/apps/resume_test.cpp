@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/image/image_io.h"
+#include "integrators/checkpoint.h"
 #include "tests/support/process.h"
 
 namespace vernier::test {
@@ -50,6 +51,20 @@ TEST_F(ResumeCommand, SignalThenTheRest) {
   EXPECT_EQ(a["resumed"]["file"], ckpt_);
   EXPECT_GT(a["seconds"]["render"], a["resumed"]["seconds"]);
   EXPECT_EQ(a["picture"]["samples"], a["rays"]["camera"]);
+}
+
+TEST_F(ResumeCommand, AnotherBuildIsToldOf) {
+  ASSERT_EQ(render("a.exr", {"--spp", "4", "--checkpoint", ckpt_, "-q"}).exit_code, 0);
+  const ProcessResult same = render("a.exr", {"--spp", "5", "--resume", ckpt_, "--progress", "none"});
+  ASSERT_EQ(same.exit_code, 0) << same.err;
+  EXPECT_THAT(same.err, testing::Not(HasSubstr("build")));
+  Checkpoint checkpoint = read_checkpoint(ckpt_);
+  EXPECT_THAT(take(checkpoint.identity, "build"), testing::MatchesRegex("[0-9a-f]{40}"));
+  checkpoint.identity.emplace_back("build", "another");
+  write_checkpoint(ckpt_, checkpoint.identity, *checkpoint.state);
+  const ProcessResult other = render("a.exr", {"--spp", "5", "--resume", ckpt_, "--progress", "none"});
+  EXPECT_EQ(other.exit_code, 0) << other.err;
+  EXPECT_THAT(other.err, HasSubstr("warning: " + ckpt_ + " was written by another build"));
 }
 
 TEST_F(ResumeCommand, OneCommandStartsAndGoesOn) {
