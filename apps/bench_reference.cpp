@@ -89,16 +89,9 @@ void add_measured_picture_flags(CLI::App& command, RenderFlags& flags) {
   command.add_option("--size", flags.size, "of the picture (the reference's, else 256 pixels long)")
       ->check(parsed_by(parse_pixel_size))
       ->type_name("WxH");
-  command.add_option("--camera", flags.camera, "of the scene, by name or number (the first)")
-      ->type_name("NAME|N");
-  command.add_option("--adaptive", flags.adaptive, "as in vernier render: on, off")
-      ->check(CLI::IsMember({"on", "off"}))
-      ->type_name("on|off")
-      ->capture_default_str();
-  command.add_option("--max-depth", flags.integrator_options.max_depth, "path vertices after the camera")
-      ->check(whole_number(1, 65536))
-      ->type_name("N")
-      ->capture_default_str();
+  add_camera_flag(command, flags);
+  add_adaptive_flag(command, flags);
+  add_max_depth_flag(command, flags);
   add_environment_flags(command, flags);
 }
 

@@ -1,11 +1,10 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "apps/commands.h"
+#include "apps/render_flags.h"
 #include "core/base/quantities.h"
 #include "core/image/denoise.h"
 #include "core/image/display.h"
@@ -13,43 +12,10 @@
 #include "integrators/layers.h"
 #include "integrators/render.h"
 #include "scene/description.h"
-#include "scene/import/import.h"
 
 namespace vernier::apps {
 
 enum class ProgressMode { automatic, bar, lines, json, none };
-
-/// The flags of `vernier render`, as typed.
-struct RenderFlags {
-  std::string scene;
-  ImportOptions import;
-  std::vector<std::string> outputs;
-
-  std::string integrator = "path";
-  std::string show;  ///< empty: not given
-  IntegratorOptions integrator_options;
-  std::string accelerator;
-
-  std::optional<int> spp;
-  std::string time, error, size, crop;
-  std::string adaptive = "on";
-  uint64_t seed = 0;
-  unsigned threads = 0;
-
-  std::string camera;
-  std::string environment;
-  float environment_rotate = 0;  ///< degrees
-  float environment_scale = 1;
-
-  std::string layers;   ///< --aov; empty: none
-  std::string denoise;  ///< filter; empty: none
-  DisplayOptions display;
-  std::string progress = "auto";
-  std::string stats, report;
-  std::string checkpoint, resume;  ///< files; empty: none
-  std::string checkpoint_every = "5m";
-  bool quiet = false, verbose = false;
-};
 
 /// The flags after everything that can be checked without reading a scene has been checked.
 struct RenderRequest {
@@ -63,20 +29,11 @@ struct RenderRequest {
   std::shared_ptr<const EnvironmentDescription> environment;  ///< null: the scene's own
 };
 
-/// Declares the flags on `command`.
-void add_render_flags(CLI::App& command, RenderFlags& flags);
-
-/// The part of them that says what surrounds the scene.
-void add_environment_flags(CLI::App& command, RenderFlags& flags);
-
 /// Null: the scene's own. Throws Error.
 std::shared_ptr<const EnvironmentDescription> read_environment(const RenderFlags& flags);
 
 /// Puts surroundings, if any, in place of the scene's own, and notes if it had some.
 void surround(SceneDescription& scene, std::shared_ptr<const EnvironmentDescription> environment);
-
-/// Prints the list that a flag given as "help" asks for; false when none was.
-bool print_requested_list(const RenderFlags& flags);
 
 /// Checks names, sizes, outputs and reads the environment. Throws Error.
 RenderRequest check_render_flags(const RenderFlags& flags);

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/commands.h"
+#include "core/image/display.h"
+#include "integrators/integrator.h"
+#include "scene/import/import.h"
+
+namespace vernier::apps {
+
+/// The flags of `vernier render`, as typed.
+struct RenderFlags {
+  std::string scene;
+  ImportOptions import;
+  std::vector<std::string> outputs;
+
+  std::string integrator = "path";
+  std::string show;  ///< empty: not given
+  IntegratorOptions integrator_options;
+  std::string accelerator;
+
+  std::optional<int> spp;
+  std::string time, error, size, crop;
+  std::string adaptive = "on";
+  uint64_t seed = 0;
+  unsigned threads = 0;
+
+  std::string camera;
+  std::string environment;
+  float environment_rotate = 0;  ///< degrees
+  float environment_scale = 1;
+
+  std::string layers;   ///< --aov; empty: none
+  std::string denoise;  ///< filter; empty: none
+  DisplayOptions display;
+  std::string progress = "auto";
+  std::string stats, report;
+  std::string checkpoint, resume;  ///< files; empty: none
+  std::string checkpoint_every = "5m";
+  bool quiet = false, verbose = false;
+};
+
+/// Declares the flags on `command`.
+void add_render_flags(CLI::App& command, RenderFlags& flags);
+
+/// Parts of them, for other commands: which camera, how samples are spread, how long paths are, and what
+/// surrounds the scene.
+void add_camera_flag(CLI::App& command, RenderFlags& flags);
+void add_adaptive_flag(CLI::App& command, RenderFlags& flags);
+void add_max_depth_flag(CLI::App& command, RenderFlags& flags);
+void add_environment_flags(CLI::App& command, RenderFlags& flags);
+
+/// Prints the list that a flag given as "help" asks for; false when none was.
+bool print_requested_list(const RenderFlags& flags);
+
+}  // namespace vernier::apps
