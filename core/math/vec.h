@@ -74,7 +74,10 @@ inline bool is_black(const Rgb& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 inline float luminance(const Rgb& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
 inline float lerp(float t, float a, float b) { return (1 - t) * a + t * b; }
-constexpr float square(float x) { return x * x; }
+template <typename T>
+constexpr T square(T x) {
+  return x * x;
+}
 /// sqrt(max(0, x)): for 1 - x^2 that rounding may push below zero.
 inline float safe_sqrt(float x) { return std::sqrt(std::max(0.f, x)); }
 

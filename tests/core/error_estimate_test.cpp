@@ -260,6 +260,18 @@ TEST(ErrorEstimate, ManyFirefliesMakeTheirNeighbourhoodSuspect) {
   EXPECT_EQ(estimate_error(film).unreliable, 1);
 }
 
+// Squares of such differences are too small for a float.
+TEST(ErrorLayers, LightFaintBeyondMeasureHasAnErrorToo) {
+  Film film(side, side);
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x)
+      for (int i = 0; i < 32; ++i) ASSERT_TRUE(film.add(x, y, i % 2, {0, 0, x == 9 && i == 0 ? 1e-12f : 0}));
+  for (const float error : error_layers(film).standard_error.values) {
+    ASSERT_GE(error, 0);
+    ASSERT_LT(error, 1e-12);
+  }
+}
+
 TEST(ErrorEstimate, IsNotKnownWhileAPixelLacksSamples) {
   Film film(2, 1);
   for (int i = 0; i < 16; ++i) ASSERT_TRUE(film.add(0, 0, i % 2, {1, 1, 1}));
