@@ -7,7 +7,8 @@
 
 namespace vernier {
 
-/// Writes a file beside `path` and renames it, so that `path` is never half-written. Throws Error(output).
+/// Writes a file beside `path` and renames it, so that `path` is never half-written; through a symbolic link,
+/// beside what it points to. Devices and pipes are written into. Throws Error(output).
 void write_text_file(const std::string& path, std::string_view text);
 
 /// The same with bytes that lie in several places, one after the other; and they are on the disk before the

@@ -19,6 +19,21 @@ TEST(TextFile, WritesAndReplaces) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"a.json"});
 }
 
+// Else --stats /dev/stdout, by root, would put a file in the place of the system's.
+TEST(TextFile, LinksAndDevicesStayWhatTheyAre) {
+  const test::TemporaryFolder folder;
+  const std::string link = folder.file("link.json"), device = folder.file("device");
+  std::filesystem::create_symlink(folder.write("a.json", ""), link);
+  std::filesystem::create_symlink("/dev/null", device);
+  for (const auto& path : {link, device}) {
+    check_writable_text_file(path);
+    write_text_file(path, "text\n");
+    EXPECT_TRUE(std::filesystem::is_symlink(path));
+  }
+  EXPECT_EQ(test::read_file(folder.file("a.json")), "text\n");
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"a.json", "device", "link.json"}));
+}
+
 TEST(TextFile, RefusesWhatCannotBeWritten) {
   const test::TemporaryFolder folder;
   for (const std::string& path : {folder.file("missing/a.json"), folder.path().string()}) {
