@@ -10,6 +10,10 @@
 #include "core/image/metrics.h"
 
 namespace vernier {
+
+// GoogleTest would print bytes.
+static void PrintTo(const Denoiser& denoiser, std::ostream* out) { *out << denoiser.name; }
+
 namespace {
 
 constexpr int size = 72;

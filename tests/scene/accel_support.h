@@ -8,6 +8,13 @@
 #include "scene/accel/accelerator.h"
 #include "scene/accel/proof/soup.h"
 
+namespace vernier {
+
+/// GoogleTest would print bytes.
+inline void PrintTo(const AcceleratorEntry& entry, std::ostream* out) { *out << entry.name; }
+
+}  // namespace vernier
+
 namespace vernier::test {
 
 /// A test that every line of accelerators() goes through.
