@@ -94,13 +94,13 @@ void print_summary(const std::vector<SceneConvergence>& scenes) {
   fmt::print("{}", text_table(rows));
 }
 
-/// "2 scenes, 4 candidates each, 5 seeds: 10 m 00 s of rendering"
+/// "scenes 2, candidates of each 4, seeds 5: 10 m 00 s of rendering"
 std::string announcement(const ConvergencePlan& plan) {
   double seconds = 0;
   for (const double time : plan.times) seconds += time;
   const size_t candidates = plan.integrators.size() * plan.accelerators.size();
   seconds *= double(plan.scenes.size() * candidates) * plan.seeds;
-  return fmt::format("{} scenes, {} candidates each, {} seeds: {} of rendering{}", plan.scenes.size(),
+  return fmt::format("scenes {}, candidates of each {}, seeds {}: {} of rendering{}", plan.scenes.size(),
                      candidates, plan.seeds, format_seconds(seconds),
                      plan.references.empty() ? ", and the references" : "");
 }

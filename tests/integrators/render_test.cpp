@@ -136,8 +136,8 @@ bool is_mean_right(const Fireflies& integrator, RenderOptions options, uint64_t 
 }
 
 // Adaptive sampling does not change what the image converges to, though whether a pixel gets more samples
-// depends on fireflies that were found. Detects a bias of 0.13 % (the test prints it); plans made from all
-// samples of the other half, not only from its guide, are off by 0.25 %.
+// depends on fireflies that were found. Detects a bias of 0.13 % (the test prints it); plans of a half from
+// its own samples are off by 0.6 %.
 TEST(Render, AdaptiveSamplingIsUnbiased) {
   RenderOptions options;
   options.width = options.height = 16;
