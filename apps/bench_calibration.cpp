@@ -57,20 +57,19 @@ void print_report(const Json& report) {
 Reference read_reference_with_error(const std::string& file) {
   Reference reference = read_reference(file);
   if (reference.standard_error.values.empty())
-    throw Error(ErrorKind::input, fmt::format("{}: has no layer 'error'; render the reference with "
-                                              "vernier render --adaptive off --aov error",
-                                              file));
+    throw Error(ErrorKind::input, file, {},
+                "has no layer 'error'; render the reference with vernier render --adaptive off --aov error");
   return reference;
 }
 
 ExitCode run_bench_calibration(const CalibrationFlags& flags, const Program& program) {
   require_scene(flags.render.scene, "bench calibration");
   if (!flags.json.empty()) check_writable_text_file(flags.json);
-  std::optional<Reference> given;
   if (flags.reference.empty() && flags.seeds < fewest_runs_without_reference)
     throw Error(ErrorKind::usage, fmt::format("--seeds: at least {} without --reference, since each run is "
                                               "compared with the mean of the others",
                                               fewest_runs_without_reference));
+  std::optional<Reference> given;
   if (!flags.reference.empty()) given = read_reference_with_error(flags.reference);
   NoticeLog log(false);
   SceneDescription description = import_scene(flags.render.scene, flags.render.import);

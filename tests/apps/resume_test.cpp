@@ -30,11 +30,12 @@ class ResumeCommand : public testing::Test {
 };
 
 TEST_F(ResumeCommand, SignalThenTheRest) {
+  // With an error figure a slow machine has come as far as some passes, too.
   const ProcessResult cut = render("cut.exr", {"--spp", "5000", "--checkpoint", ckpt_, "--progress", "json"},
-                                   {SIGTERM, "\"event\":\"progress\""});
+                                   {SIGTERM, "\"rel_rmse\":0."});
   ASSERT_EQ(cut.exit_code, 5) << cut.err;
   const double done = std::stod(read_layers(folder_.file("cut.exr")).metadata.at("vernier:samplesPerPixel"));
-  ASSERT_GT(done, 0);  // a slow machine has not come far
+  ASSERT_GT(done, 1);
   // As much again, in one go and in two.
   const std::string spp = std::to_string(int(2 * done) + 3);
   const std::vector<std::string> layers{"--spp", spp, "--aov", "error,samples,half,albedo", "-q"};
