@@ -1,7 +1,7 @@
 #include "integrators/first_hit.h"
 
 #include "integrators/camera_sample.h"
-#include "scene/scene.h"
+#include "scene/segment.h"
 
 namespace vernier {
 
@@ -23,9 +23,9 @@ FirstHitMean FirstHits::mean(int x, int y) const {
                                     i, options_.seed)
                           .ray;
       ++count;
-      const auto hit = scene_.intersect_from_camera(ray);
+      const auto hit = intersect_from_camera(scene_, camera_segment(scene_, ray));
       if (!hit) continue;
-      const Shading shading = scene_.shade(*hit, -ray.direction);
+      const Shading shading = shade(scene_, *hit, -ray.direction);
       sum.albedo += shading.albedo();
       sum.normal += shading.normal();
       ++sum.coverage;
@@ -37,7 +37,7 @@ FirstHitMean FirstHits::mean(int x, int y) const {
 
 std::optional<FirstHit> FirstHits::at_center(int x, int y) const {
   const Ray ray = camera_.ray({float(options_.crop.x + x) + 0.5f, float(options_.crop.y + y) + 0.5f});
-  const auto hit = scene_.intersect_from_camera(ray);
+  const auto hit = intersect_from_camera(scene_, camera_segment(scene_, ray));
   if (!hit) return std::nullopt;
   return FirstHit{hit->t * dot(ray.direction, axis_), hit->position, hit->instance};
 }

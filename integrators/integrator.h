@@ -26,10 +26,23 @@ struct RayCounts {
   }
 };
 
+/// Light that a sample knows of and leaves out, in the unit of its radiance.
+struct MissingLight {
+  Rgb bent{0, 0, 0};   ///< of lamps, through glass that bends it: at most this much arrives on other ways
+  Rgb depth{0, 0, 0};  ///< of paths longer than the depth limit; right in the mean
+
+  MissingLight& operator+=(const MissingLight& other) {
+    bent += other.bent;
+    depth += other.depth;
+    return *this;
+  }
+};
+
 /// One sample's answer: radiance arriving along the camera ray, W m^-2 sr^-1 in linear Rec.709 (or what
 /// `--show` asks).
 struct Estimate {
   Rgb radiance{0, 0, 0};
+  MissingLight missing;
   RayCounts rays;
 };
 

@@ -1,63 +1,68 @@
 #include "integrators/transport.h"
-#include "scene/scene.h"
 
 namespace vernier {
 namespace {
 
 /// Unidirectional path tracing with next-event estimation and multiple importance sampling (Kajiya 1986;
-/// Veach 1997, chapters 9 and 10). Unbiased up to the depth limit.
+/// Veach 1997, chapters 9 and 10). Unbiased but for what Estimate::missing tells.
+///
+/// A surface that a path passes straight on hides no light from the vertex before it: next-event estimation
+/// looks through, and what the path meets beyond is weighted as if that vertex saw it.
 class PathIntegrator : public Integrator {
  public:
   explicit PathIntegrator(const IntegratorOptions& options) : options_(options) {}
 
   Estimate estimate(const Scene& scene, const Ray& camera_ray, Sampler& sampler) const override {
     Estimate out;
-    Ray ray = camera_ray;
-    Rgb throughput(1, 1, 1);
-    Rgb absorption(0, 0, 0);   // of the volume the ray is in
-    float radiance_scale = 1;  // product of eta^2: undoes the compression of radiance inside dense media
-    Scattering last;           // how the ray came to be
-    auto hit = scene.intersect_from_camera(ray);
+    Segment segment = camera_segment(scene, camera_ray);
+    Rgb throughput = camera_response(scene, segment);
+    float eta_scale = 1;    // product of eta^2: undoes the compression of radiance inside dense media
+    float audit_scale = 1;  // of the few paths that go on beyond the depth limit
+    Scattering last;        // how the ray came to be
+    auto hit = intersect_from_camera(scene, segment);
     ++out.rays.camera;
 
     for (int depth = 1;; ++depth) {
-      if (hit) throughput *= transmittance(absorption, hit->t);
-      out.radiance += throughput * met_emission(scene, last, ray, hit);
-      if (!hit || depth == options_.max_depth) break;
+      throughput *= transmittance(scene.volumes().medium(segment.media), hit ? hit->t : segment.ray.t_max);
+      add(out, depth, throughput * met_emission(scene, last, segment.ray, hit));
+      if (!hit) break;
 
       sampler.start_block(uint32_t(depth));
       const Vec2f light_point = sampler.next2();
       const Vec2f direction = sampler.next2();
       const float light_choice = sampler.next1();
       const float lobe_choice = sampler.next1();
-      const float roulette = sampler.next1();
+      float roulette = sampler.next1();
 
-      const Shading surface = scene.shade(*hit, -ray.direction, throughput);
-      if (options_.light_sampling != LightSampling::bsdf) {
-        const auto light = scene.sample_light(*hit, light_choice, light_point);
-        const bool through = light && surface.is_transmitted(light->wi);
-        const Rgb medium = through ? absorption_beyond(scene.material(*hit), hit->front) : absorption;
-        out.radiance += throughput * direct(scene, surface, light, medium, out.rays);
+      if (depth == options_.max_depth) {
+        if (roulette >= audited_share) break;
+        roulette /= audited_share;
+        audit_scale = 1 / audited_share;
+        throughput *= audit_scale;
       }
+      const Shading surface = shade(scene, *hit, -segment.ray.direction, throughput);
+      if (options_.light_sampling != LightSampling::bsdf)
+        if (const auto light = scene.sample_light(*hit, light_choice, light_point))
+          add_direct(out, depth, throughput, scene, *hit, surface, *light);
       const auto next = surface.sample(lobe_choice, direction);
       if (!next) break;
       throughput *= next->weight;
-      radiance_scale *= next->eta * next->eta;
-      if (next->is_transmitted) absorption = absorption_beyond(scene.material(*hit), hit->front);
-      if (options_.russian_roulette && depth > 1) {
-        const float survival = survival_probability(throughput * radiance_scale);
-        if (roulette >= survival) break;
-        throughput /= survival;
-      }
-      last = {*hit, next->pdf, next->is_delta};
-      ray = hit->spawn(next->wi);
-      hit = scene.intersect(ray);
+      eta_scale *= next->eta * next->eta;
+      const float survival = survival_probability(depth, throughput * (eta_scale / audit_scale));
+      if (roulette >= survival) break;
+      throughput /= survival;
+      if (!next->is_straight) last = {*hit, next->pdf, next->is_delta};
+      segment = hit->spawn(next->wi);
+      hit = intersect(scene, segment);
       ++out.rays.bounce;
     }
     return out;
   }
 
  private:
+  /// Of the paths that reach the depth limit, those that go on to tell how much light it takes.
+  static constexpr float audited_share = 1 / 32.f;
+
   /// The surface and density that a ray left with; no surface: the camera.
   struct Scattering {
     std::optional<SurfacePoint> from;
@@ -65,9 +70,14 @@ class PathIntegrator : public Integrator {
     bool is_delta = true;
   };
 
+  /// Light of a path of `depth` vertices after the camera, its source included.
+  void add(Estimate& out, int depth, const Rgb& radiance) const {
+    (depth <= options_.max_depth ? out.radiance : out.missing.depth) += radiance;
+  }
+
   /// Emission met by a ray, weighted against next-event estimation: area lights and environment alike.
   Rgb met_emission(const Scene& scene, const Scattering& last, const Ray& ray,
-                   const std::optional<SurfacePoint>& hit) const {
+                   const std::optional<Interaction>& hit) const {
     const bool only_met = last.is_delta || options_.light_sampling == LightSampling::bsdf;
     const auto [radiance, light_pdf] =
         scene.emitted(only_met ? nullptr : &*last.from, ray, hit ? &*hit : nullptr);
@@ -77,23 +87,29 @@ class PathIntegrator : public Integrator {
   }
 
   /// Next-event estimation: light from one sampled light, weighted against the BSDF's own sampling.
-  Rgb direct(const Scene& scene, const Shading& surface, const std::optional<LightSample>& light,
-             const Rgb& absorption, RayCounts& rays) const {
-    if (!light) return {0, 0, 0};
-    const BsdfEval scattered = surface.eval(light->wi);
-    if (is_black(scattered.f_cos)) return {0, 0, 0};
-    ++rays.shadow;
-    if (scene.occluded(light->shadow)) return {0, 0, 0};
-    const bool only_sampled = light->is_delta || options_.light_sampling == LightSampling::light;
-    const float weight = only_sampled ? 1 : power_heuristic(light->pdf, scattered.pdf);
-    const float distance = length(light->shadow.direction) * light->shadow.t_max;
-    return light->radiance * scattered.f_cos * transmittance(absorption, distance) * (weight / light->pdf);
+  void add_direct(Estimate& out, int depth, const Rgb& throughput, const Scene& scene, const Interaction& at,
+                  const Shading& surface, const LightSample& light) const {
+    const BsdfEval scattered = surface.eval(light.wi);
+    if (is_black(scattered.f_cos)) return;
+    ++out.rays.shadow;
+    const Passage passage = transmittance(scene, at.spawn_to(light));
+    if (is_black(passage.fraction)) return;
+    const bool only_sampled = light.is_delta || options_.light_sampling == LightSampling::light;
+    const float weight = only_sampled ? 1 : power_heuristic(light.pdf, scattered.pdf);
+    const Rgb radiance =
+        throughput * light.radiance * scattered.f_cos * passage.fraction * (weight / light.pdf);
+    if (!passage.is_bent)
+      add(out, depth + 1 + passage.surfaces, radiance);
+    else if (light.is_delta)
+      out.missing.bent += radiance;
   }
 
   /// Russian roulette. Five times the throughput instead of the throughput itself: ending paths that still
   /// carry a fifth of their light costs more in variance than it saves in rays on measured scenes.
-  static float survival_probability(const Rgb& throughput) {
-    return std::min(1.f, 5 * max_component(throughput));
+  float survival_probability(int depth, const Rgb& throughput) const {
+    const float kept = 5 * max_component(throughput);
+    if (depth >= options_.max_depth) return std::min(0.9f, kept);
+    return options_.russian_roulette && depth > 1 ? std::min(1.f, kept) : 1;
   }
 
   IntegratorOptions options_;

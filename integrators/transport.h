@@ -1,7 +1,7 @@
 #pragma once
 
 #include "integrators/integrator.h"
-#include "materials/material.h"
+#include "scene/segment.h"
 
 // Small pieces that more than one integrator needs.
 
@@ -14,18 +14,11 @@ inline float power_heuristic(float pdf, float other_pdf) {
   return 1 / (1 + ratio * ratio);
 }
 
-/// Beer-Lambert: what is left of light after `distance` metres, which may be infinite, at `absorption` per
-/// metre.
-inline Rgb transmittance(const Rgb& absorption, float distance) {
-  if (is_black(absorption)) return {1, 1, 1};
-  Rgb left;
-  for (int c = 0; c < 3; ++c) left[c] = absorption[c] > 0 ? std::exp(-absorption[c] * distance) : 1;
-  return left;
-}
-
-/// Absorption on the far side of a surface crossed from its front or back. A thin surface has none behind it.
-inline Rgb absorption_beyond(const Material& material, bool entering) {
-  return entering && material.is_volume_boundary() ? material.absorption() : Rgb(0, 0, 0);
+/// What a camera makes of radiance along a segment that begins in a medium: as through a flat port from air,
+/// so radiance over the squared index, which no boundary changes.
+inline Rgb camera_response(const Scene& scene, const Segment& segment) {
+  const Rgb& ior = scene.volumes().medium(segment.media).ior;
+  return Rgb(1, 1, 1) / (ior * ior);
 }
 
 }  // namespace vernier

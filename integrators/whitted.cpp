@@ -1,5 +1,4 @@
 #include "integrators/transport.h"
-#include "scene/scene.h"
 
 namespace vernier {
 namespace {
@@ -14,8 +13,10 @@ class WhittedIntegrator : public Integrator {
   Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler) const override {
     Walk walk{scene, sampler, {}, 0};
     ++walk.out.rays.camera;
-    const auto hit = scene.intersect_from_camera(ray);
-    walk.out.radiance = arriving(walk, ray, hit, {1, {1, 1, 1}, {0, 0, 0}, true});
+    const Segment segment = camera_segment(scene, ray);
+    const Rgb response = camera_response(scene, segment);
+    walk.out.radiance =
+        response * arriving(walk, segment, intersect_from_camera(scene, segment), {1, response, true});
     return walk.out;
   }
 
@@ -31,64 +32,67 @@ class WhittedIntegrator : public Integrator {
   };
 
   /// What a ray carries on its way from the eye.
-  struct Segment {
+  struct Carried {
     int depth;
     Rgb weight;          ///< of what it finds in the final pixel
-    Rgb absorption;      ///< of the volume it passes
     bool sees_emitters;  ///< false where direct lighting has counted them already
   };
 
-  Rgb arriving(Walk& walk, const Ray& ray, const std::optional<SurfacePoint>& hit,
-               const Segment& segment) const {
+  Rgb arriving(Walk& walk, const Segment& segment, const std::optional<Interaction>& hit,
+               const Carried& carried) const {
+    const Ray& ray = segment.ray;
+    const Rgb passed = transmittance(walk.scene.volumes().medium(segment.media), hit ? hit->t : ray.t_max);
     Rgb radiance(0, 0, 0);
-    if (segment.sees_emitters) radiance = walk.scene.emitted(nullptr, ray, hit ? &*hit : nullptr).radiance;
-    if (!hit) return radiance;
-    const Rgb passed = transmittance(segment.absorption, hit->t);
-    if (segment.depth >= options_.max_depth) return radiance * passed;
-    const Shading surface = walk.scene.shade(*hit, -ray.direction);
-    radiance += surface.albedo() * options_.ambient + direct(walk, *hit, surface);
+    if (carried.sees_emitters) radiance = walk.scene.emitted(nullptr, ray, hit ? &*hit : nullptr).radiance;
+    if (!hit || carried.depth >= options_.max_depth) return radiance * passed;
+    const Shading surface = shade(walk.scene, *hit, -ray.direction);
+    radiance += surface.albedo() * options_.ambient + direct(walk, *hit, surface, carried.weight * passed);
 
     const auto [rays, reflected] = surface.specular();
     if (rays.alpha <= sharp_alpha) {
       // A lobe of some width has shown the lights in direct() already.
-      Segment next{segment.depth + 1, segment.weight * passed, segment.absorption,
-                   rays.alpha < Ggx::smooth_limit};
+      const Carried next{carried.depth + 1, carried.weight * passed, rays.alpha < Ggx::smooth_limit};
       radiance += follow(walk, *hit, reflected, rays.reflected, next);
-      next.absorption = absorption_beyond(walk.scene.material(*hit), hit->front);
       radiance += follow(walk, *hit, rays.refracted, rays.transmitted, next);
     }
     return radiance * passed;
   }
 
   /// Light along a mirrored or refracted direction, if it can still matter.
-  Rgb follow(Walk& walk, const SurfacePoint& from, const Vec3f& direction, const Rgb& factor,
-             Segment segment) const {
-    segment.weight *= factor;
-    if (max_component(segment.weight) < options_.cutoff) return {0, 0, 0};
-    const Ray ray = from.spawn(direction);
+  Rgb follow(Walk& walk, const Interaction& from, const Vec3f& direction, const Rgb& factor,
+             Carried carried) const {
+    carried.weight *= factor;
+    if (max_component(carried.weight) < options_.cutoff) return {0, 0, 0};
+    const Segment segment = from.spawn(direction);
     ++walk.out.rays.bounce;
-    return factor * arriving(walk, ray, walk.scene.intersect(ray), segment);
+    return factor * arriving(walk, segment, intersect(walk.scene, segment), carried);
   }
 
-  Rgb direct(Walk& walk, const SurfacePoint& hit, const Shading& surface) const {
+  /// `weight`: of what this returns in the final pixel.
+  Rgb direct(Walk& walk, const Interaction& hit, const Shading& surface, const Rgb& weight) const {
     Rgb radiance(0, 0, 0);
     const LightSet& lights = walk.scene.lights();
     for (const Light* light : lights.delta_lights())
-      if (const auto sample = light->sample(hit, {0, 0})) radiance += shine(walk, surface, *sample);
+      if (const auto sample = light->sample(hit, {0, 0}))
+        radiance += shine(walk, hit, surface, *sample, weight);
     walk.sampler.start_block(++walk.block);
     const Vec2f point = walk.sampler.next2();
     const float choice = walk.sampler.next1();
     const auto sample = walk.scene.sample_light(hit, choice, point);
-    if (sample && !sample->is_delta) radiance += shine(walk, surface, *sample);
+    if (sample && !sample->is_delta) radiance += shine(walk, hit, surface, *sample, weight);
     return radiance;
   }
 
-  static Rgb shine(Walk& walk, const Shading& surface, const LightSample& light) {
+  static Rgb shine(Walk& walk, const Interaction& at, const Shading& surface, const LightSample& light,
+                   const Rgb& weight) {
     const Rgb f_cos = surface.eval(light.wi).f_cos;
     if (is_black(f_cos)) return {0, 0, 0};
     ++walk.out.rays.shadow;
-    if (walk.scene.occluded(light.shadow)) return {0, 0, 0};
-    return light.radiance * f_cos / light.pdf;
+    const Passage passage = transmittance(walk.scene, at.spawn_to(light));
+    const Rgb radiance = light.radiance * f_cos * passage.fraction / light.pdf;
+    if (!passage.is_bent) return radiance;
+    walk.out.missing.bent += weight * radiance;
+    return {0, 0, 0};
   }
 
   IntegratorOptions options_;

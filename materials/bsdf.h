@@ -32,6 +32,10 @@ class Bsdf : public std::variant<Lambert, Glossy, Dielectric, Mixture, Layered> 
   SpecularRays specular(const Vec3f& wo) const {
     return std::visit([&](const auto& model) { return model.specular(wo); }, base());
   }
+  Rgb straight(const Vec3f& wo) const {
+    if (wo.z < least_cosine) return {0, 0, 0};
+    return std::visit([&](const auto& model) { return model.straight(wo); }, base());
+  }
 
  private:
   /// Directions nearer to the surface are answered with nothing: models divide by cosines and their squares.

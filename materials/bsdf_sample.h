@@ -13,6 +13,9 @@
 //   std::optional<BsdfSample> sample(wo, u, v) const             empty: the sample carries nothing
 //   Rgb albedo(wo) const                                         estimate of the fraction of light scattered
 //   SpecularRays specular(wo) const                              what a Whitted ray tracer follows
+//   Rgb straight(wo) const                                       fraction of light that passes undeflected,
+//   as
+//                                                                a delta lobe toward -wo
 
 namespace vernier {
 
@@ -32,6 +35,9 @@ struct BsdfSample {
 
   bool is_delta() const { return lobe == Lobe::delta; }
   bool is_transmitted() const { return wi.z < 0; }
+  /// Passes on in the direction it came: no event that a ray of light from beyond would notice but by its
+  /// loss.
+  bool is_straight() const { return is_delta() && is_transmitted() && eta == 1; }
 };
 
 /// The mirror and refraction directions of a surface, each with the fraction of light that goes that way when

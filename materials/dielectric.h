@@ -13,6 +13,9 @@ namespace vernier {
 struct Dispersion {
   std::array<float, 3> eta;
   std::array<const GlassEnergy*, 3> energy;
+
+  /// The one of these indices, kept for good. May be called from any thread.
+  static const Dispersion& of(const std::array<float, 3>& eta);
 };
 
 /// Clear boundary, smooth or GGX-rough, with exact Fresnel reflectance (Walter et al. 2007, eqs. 20, 21).
@@ -75,11 +78,24 @@ struct Dielectric {
     return split.reflected + split.transmitted;
   }
 
+  /// Thin sheets narrower than this count as smooth: they blur what is behind them by less than a tenth of a
+  /// degree, and a lamp seen through a narrower lobe would hardly ever be found by chance.
+  static constexpr float clear_limit = 2e-3f;
+
+  Rgb straight(const Vec3f& wo) const {
+    if (dispersion) {
+      Rgb sum(0, 0, 0);
+      for (int c = 0; c < 3; ++c) sum[c] = of_channel(c).straight(wo)[c];
+      return sum;
+    }
+    return is_delta() && (thin || eta == 1) ? boundary(wo.z).transmitted : Rgb(0, 0, 0);
+  }
+
   SpecularRays specular(const Vec3f& wo) const {
     const Split split = boundary(wo.z);
     const float bent = thin ? 1 : eta;
     const Vec3f through = thin ? -wo : refract(wo, {0, 0, 1}, wo.z, split.cos_t);
-    return {split.reflected, split.transmitted / (bent * bent), through, ggx.mean_width()};
+    return {split.reflected, split.transmitted / (bent * bent), through, is_delta() ? 0 : ggx.mean_width()};
   }
 
   /// This boundary for one colour of its dispersion.
@@ -143,7 +159,9 @@ struct Dielectric {
     return energy->albedo(wo.z, ggx.mean_width(), {max_component(fresnel.f0), fresnel.f90});
   }
 
-  bool is_delta() const { return ggx.is_smooth() || (eta == 1 && !thin); }
+  bool is_delta() const {
+    return thin ? std::max(ggx.ax, ggx.ay) < clear_limit : ggx.is_smooth() || eta == 1;
+  }
 
   Vec3f refract(const Vec3f& wo, const Vec3f& m, float cos_om, float cos_t) const {
     return (cos_om / eta - cos_t) * m - wo / eta;

@@ -66,6 +66,7 @@ class Glossy {
   SpecularRays specular(const Vec3f& wo) const {
     return {fresnel_(wo.z), {0, 0, 0}, {0, 0, -1}, ggx_.mean_width()};
   }
+  Rgb straight(const Vec3f& /*wo*/) const { return {0, 0, 0}; }
 
  private:
   Glossy(const Fresnel& fresnel, const Ggx& ggx) : fresnel_(fresnel), ggx_(ggx) {}

@@ -40,6 +40,7 @@ class Layered {
   }
 
   SpecularRays specular(const Vec3f& wo) const;
+  Rgb straight(const Vec3f& wo) const { return base_.straight(wo) * base_scale(wo, -wo, seen_from(wo)); }
 
  private:
   /// All that depends on wo alone, with the choice among the layers.

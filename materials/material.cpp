@@ -27,7 +27,7 @@ float relative_index(const MaterialDescription& d) { return d.ior == 0 ? 1e6f : 
 
 /// Indices of refraction for red, green and blue: a spread between blue and red of (n - 1) / Abbe number
 /// about the index itself (KHR_materials_dispersion).
-std::array<float, 3> dispersed_ior(const MaterialDescription& d) {
+Rgb dispersed_ior(const MaterialDescription& d) {
   const float half_spread = (d.ior - 1) * 0.025f * d.dispersion;
   return {std::max(d.ior - half_spread, 1.f), d.ior, d.ior + half_spread};
 }
@@ -57,31 +57,46 @@ Material::Material(const MaterialDescription& description, std::span<const Textu
   is_emissive_ = d.unlit || !is_black(d.emissive);
   tangent_texcoord_ = texcoord_of_tangents(d);
   absorption_ = absorption_of(d);
-  if (d.transmission > 0) sides_ = make_sides(d);
+  if (d.transmission > 0)
+    for (const bool front : {false, true}) sides_[front] = make_side(front, {1, 1, 1});
   // Under a normal map the coat's normal varies in the frame of the base.
   is_constant_ = !bsdf_varies && !(has_coat() && has_normal_maps());
   if (is_constant_) {
-    constant_front_ = make_bsdf({}, {true});
-    constant_back_ = make_bsdf({}, {false});
+    constant_front_ = make_bsdf({}, {.front = true});
+    constant_back_ = make_bsdf({}, {.front = false});
   }
 }
 
-std::shared_ptr<const std::array<Material::Side, 2>> Material::make_sides(const MaterialDescription& d) {
-  auto sides = std::make_shared<std::array<Side, 2>>();
-  for (const bool front : {false, true}) {
-    Side& side = (*sides)[front];
-    const auto seen = [&](float ior) { return front || d.thickness <= 0 ? ior : 1 / ior; };
-    side.eta = seen(relative_index(d));
-    if (d.thickness <= 0) continue;
-    side.energy = &GlassEnergy::of(side.eta);
-    if (d.dispersion <= 0 || d.ior == 0) continue;
-    side.dispersion.emplace();
-    for (size_t c = 0; c < 3; ++c) {
-      side.dispersion->eta[c] = seen(dispersed_ior(d)[c]);
-      side.dispersion->energy[c] = &GlassEnergy::of(side.dispersion->eta[c]);
-    }
-  }
-  return sides;
+Rgb Material::interior_ior() const {
+  const auto& d = description_;
+  if (!is_volume_boundary() || d.transmission <= 0) return {1, 1, 1};
+  if (d.dispersion <= 0 || d.ior == 0) return Rgb(relative_index(d));
+  return dispersed_ior(d);
+}
+
+bool Material::may_be_clear() const {
+  const auto& d = description_;
+  if (d.transmission <= 0 || d.unlit || is_volume_boundary()) return false;
+  return d.metallic_roughness_texture || square(d.roughness) < Dielectric::clear_limit;
+}
+
+Material::Side Material::make_side(bool front, const Rgb& outside_ior) const {
+  const bool thin = !is_volume_boundary();
+  const Rgb inside = thin ? Rgb(relative_index(description_)) : interior_ior();
+  const auto eta = [&](int c) {
+    return front || thin ? inside[c] / outside_ior[c] : outside_ior[c] / inside[c];
+  };
+  Side side;
+  side.eta = eta(1);
+  if (thin) return side;
+  side.energy = &GlassEnergy::of(side.eta);
+  if (eta(0) != side.eta || eta(2) != side.eta) side.dispersion = &Dispersion::of({eta(0), eta(1), eta(2)});
+  return side;
+}
+
+Material::Side Material::side(const Encounter& encounter) const {
+  if (encounter.outside_ior == Rgb(1, 1, 1)) return sides_[encounter.front];
+  return make_side(encounter.front, encounter.outside_ior);
 }
 
 Vec4f Material::read(const TextureUse& use, const SurfaceAttributes& attributes,
@@ -99,13 +114,14 @@ Vec4f Material::base_color(const SurfaceAttributes& attributes) const {
 }
 
 Bsdf Material::bsdf(const SurfaceAttributes& attributes, const Encounter& encounter) const {
-  if (is_constant_ && !encounter.channel) return encounter.front ? constant_front_ : constant_back_;
+  if (is_constant_ && !encounter.channel && encounter.outside_ior == Rgb(1, 1, 1))
+    return encounter.front ? constant_front_ : constant_back_;
   return make_bsdf(attributes, encounter);
 }
 
 Bsdf Material::make_bsdf(const SurfaceAttributes& attributes, const Encounter& encounter) const {
   if (description_.unlit) return Lambert{};
-  const Base base = read_base(attributes);
+  const Base base = read_base(attributes, encounter);
   // Sheen and coat lie on the outside of a volume.
   if (encounter.front || !is_volume_boundary()) {
     const Sheen sheen = read_sheen(attributes);
@@ -120,7 +136,7 @@ Bsdf Material::make_bsdf(const SurfaceAttributes& attributes, const Encounter& e
   return glossy(base, base.metallic, encounter);
 }
 
-Material::Base Material::read_base(const SurfaceAttributes& attributes) const {
+Material::Base Material::read_base(const SurfaceAttributes& attributes, const Encounter& encounter) const {
   const auto& d = description_;
   Base base;
   base.color = rgb(base_color(attributes));
@@ -139,16 +155,17 @@ Material::Base Material::read_base(const SurfaceAttributes& attributes) const {
   }
   base.metal = {base.color, 1, read_film(attributes)};
   base.body.reflected = base.color;
-  if (base.metallic < 1) read_dielectric(attributes, base);
+  if (base.metallic < 1) read_dielectric(attributes, encounter, base);
   return base;
 }
 
-void Material::read_dielectric(const SurfaceAttributes& attributes, Base& base) const {
+void Material::read_dielectric(const SurfaceAttributes& attributes, const Encounter& encounter,
+                               Base& base) const {
   const auto& d = description_;
   // KHR_materials_specular on top of KHR_materials_ior; an index of 0 asks for full reflectance.
   const float f90 = d.specular * read(d.specular_texture, attributes, TexelEncoding::linear).w;
   const Rgb color = d.specular_color * rgb(read(d.specular_color_texture, attributes, TexelEncoding::srgb));
-  const float f0 = d.ior == 0 ? 1 : f0_from_ior(d.ior);
+  const float f0 = d.ior == 0 ? 1 : f0_from_ior(d.ior / encounter.outside_ior[1]);
   base.dielectric = {color, f90, base.metal.film};
   for (int c = 0; c < 3; ++c) base.dielectric.f0[c] = std::min(f0 * color[c], 1.f) * f90;
 
@@ -195,18 +212,16 @@ Coat Material::read_coat(const SurfaceAttributes& attributes, const Encounter& e
 Glossy Material::glossy(const Base& base, float metallic, const Encounter& encounter) const {
   if (metallic >= 1) return Glossy::metal(base.metal, base.ggx);
   DiffuseBody body = base.body;
-  if (sides_ && is_volume_boundary()) body.eta = (*sides_)[encounter.front].eta;
+  if (description_.transmission > 0 && is_volume_boundary()) body.eta = side(encounter).eta;
   const Glossy plastic = Glossy::plastic(base.dielectric, base.ggx, body);
   return metallic > 0 ? Glossy::mix(plastic, Glossy::metal(base.metal, base.ggx), metallic) : plastic;
 }
 
 Dielectric Material::glass(const Base& base, const Encounter& encounter) const {
-  const Side& side = (*sides_)[encounter.front];
-  Dielectric result{side.eta,    base.ggx, base.color, base.dielectric, !is_volume_boundary(),
-                    side.energy, nullptr};
-  if (!side.dispersion) return result;
-  result.dispersion = &*side.dispersion;
-  return encounter.channel ? result.of_channel(*encounter.channel) : result;
+  const Side side = this->side(encounter);
+  const Dielectric result{side.eta,    base.ggx,       base.color, base.dielectric, !is_volume_boundary(),
+                          side.energy, side.dispersion};
+  return encounter.channel && side.dispersion ? result.of_channel(*encounter.channel) : result;
 }
 
 Mixture Material::mixture(const Base& base, const Encounter& encounter) const {
@@ -227,19 +242,22 @@ Rgb Material::emission(const SurfaceAttributes& attributes, bool front, float co
 }
 
 float Material::emissive_texels(const std::array<SurfaceAttributes, 3>& corners) const {
-  const TextureUse& use = description_.emissive_texture;
-  if (!use) return 0;
-  const auto at = [&](size_t i) { return transform_uv(use, corners[i].uv[size_t(use.texcoord)]); };
-  const Vec2f a = at(1) - at(0), b = at(2) - at(0);
-  const Image8& image = textures_[size_t(use.texture)].image();
-  return std::abs(a.x * b.y - a.y * b.x) / 2 * float(image.width) * float(image.height);
+  const auto texels = [&](const TextureUse& use) {
+    if (!use) return 0.f;
+    const auto at = [&](size_t i) { return transform_uv(use, corners[i].uv[size_t(use.texcoord)]); };
+    const Vec2f a = at(1) - at(0), b = at(2) - at(0);
+    const Image8& image = textures_[size_t(use.texture)].image();
+    return std::abs(a.x * b.y - a.y * b.x) / 2 * float(image.width) * float(image.height);
+  };
+  const float emitted = texels(description_.emissive_texture);
+  return is_opaque() ? emitted : std::max(emitted, texels(description_.base_color_texture));
 }
 
 float Material::coverage(const SurfaceAttributes& attributes) const {
   if (description_.alpha_mode == AlphaMode::opaque) return 1;
   const float alpha = base_color(attributes).w;
   if (description_.alpha_mode == AlphaMode::mask) return alpha >= description_.alpha_cutoff ? 1.f : 0.f;
-  return alpha;
+  return std::clamp(alpha, 0.f, 1.f);
 }
 
 Vec3f Material::read_normal(const TextureUse& use, float scale, const SurfaceAttributes& attributes) const {

@@ -18,6 +18,7 @@ struct SurfaceAttributes {
 /// How light meets a surface, as far as its scattering depends on it.
 struct Encounter {
   bool front = true;             ///< front faces look to the outside of a volume
+  Rgb outside_ior{1, 1, 1};      ///< index of refraction, by channel, of what fills the space on the front
   Vec3f coat_normal{0, 0, 1};    ///< of a clear coat, in the frame that the BSDF is to be used in
   std::optional<int> channel{};  ///< the one colour channel that the path still carries, if only one
 };
@@ -59,20 +60,28 @@ class Material {
   bool has_coat() const { return description_.clearcoat > 0; }
 
   bool is_emissive() const { return is_emissive_; }
-  /// The emission is the same at every point and to every direction of a side.
-  bool emits_evenly() const { return !description_.unlit && !description_.emissive_texture && !has_coat(); }
-  /// About how many texels of the emissive texture lie within a triangle with these corners; 0: no texture.
+  /// The emission is the same at every point and to every direction of a side, and so is the coverage.
+  bool emits_evenly() const {
+    const bool covers_evenly = is_opaque() || !(has_colors_ || description_.base_color_texture);
+    return !description_.unlit && !description_.emissive_texture && !has_coat() && covers_evenly;
+  }
+  /// About how many texels of the textures that emission and coverage depend on lie within a triangle with
+  /// these corners; 0: no texture.
   float emissive_texels(const std::array<SurfaceAttributes, 3>& corners) const;
   /// Emits, but is no light: seen by rays that happen to meet it (KHR_materials_unlit).
   bool is_unlit() const { return description_.unlit; }
   bool is_opaque() const { return description_.alpha_mode == AlphaMode::opaque; }
   bool double_sided() const { return description_.double_sided; }
   /// Light may pass through the surface.
-  bool transmits() const { return description_.transmission > 0 || description_.diffuse_transmission > 0; }
+  bool transmits() const { return description_.transmits(); }
   /// Encloses a volume: the inside absorbs, and its surface bends light that is not scattered.
-  bool is_volume_boundary() const { return description_.thickness > 0 && transmits(); }
+  bool is_volume_boundary() const { return description_.bounds_volume(); }
   /// Absorption coefficient of that volume, per metre (KHR_materials_volume: -ln(colour) / distance).
   const Rgb& absorption() const { return absorption_; }
+  /// Index of refraction of what lies behind the surface, by channel; air where light is not refracted.
+  Rgb interior_ior() const;
+  /// Some light may pass a surface that is no volume's boundary without being deflected.
+  bool may_be_clear() const;
   const std::string& name() const { return description_.name; }
 
  private:
@@ -88,16 +97,19 @@ class Material {
   struct Side {
     float eta = 1;
     const GlassEnergy* energy = nullptr;
-    std::optional<Dispersion> dispersion;
+    const Dispersion* dispersion = nullptr;
   };
+
+  /// From `front` or back, with a medium of these indices on the front.
+  Side make_side(bool front, const Rgb& outside_ior) const;
 
   Vec4f read(const TextureUse& use, const SurfaceAttributes& attributes, TexelEncoding encoding) const;
   Vec4f base_color(const SurfaceAttributes& attributes) const;
   Vec3f read_normal(const TextureUse& use, float scale, const SurfaceAttributes& attributes) const;
 
   Bsdf make_bsdf(const SurfaceAttributes& attributes, const Encounter& encounter) const;
-  Base read_base(const SurfaceAttributes& attributes) const;
-  void read_dielectric(const SurfaceAttributes& attributes, Base& base) const;
+  Base read_base(const SurfaceAttributes& attributes, const Encounter& encounter) const;
+  void read_dielectric(const SurfaceAttributes& attributes, const Encounter& encounter, Base& base) const;
   ThinFilm read_film(const SurfaceAttributes& attributes) const;
   Sheen read_sheen(const SurfaceAttributes& attributes) const;
   float coat_weight(const SurfaceAttributes& attributes) const;
@@ -105,7 +117,7 @@ class Material {
   Glossy glossy(const Base& base, float metallic, const Encounter& encounter) const;
   Dielectric glass(const Base& base, const Encounter& encounter) const;
   Mixture mixture(const Base& base, const Encounter& encounter) const;
-  static std::shared_ptr<const std::array<Side, 2>> make_sides(const MaterialDescription& description);
+  Side side(const Encounter& encounter) const;
 
   MaterialDescription description_;
   std::span<const Texture> textures_;
@@ -115,7 +127,7 @@ class Material {
   bool is_emissive_ = false;
   int tangent_texcoord_ = 0;
   Rgb absorption_{0, 0, 0};
-  std::shared_ptr<const std::array<Side, 2>> sides_;  ///< back, front; null: bends no light
+  std::array<Side, 2> sides_;  ///< back and front, in air; only of materials that transmit light unscattered
   Bsdf constant_front_, constant_back_;
 };
 

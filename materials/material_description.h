@@ -78,6 +78,11 @@ struct MaterialDescription {
   TextureUse diffuse_transmission_texture;  ///< A
   Rgb diffuse_transmission_color{1, 1, 1};
   TextureUse diffuse_transmission_color_texture;  ///< RGB sRGB-encoded
+
+  /// Light may pass through the surface.
+  bool transmits() const { return transmission > 0 || diffuse_transmission > 0; }
+  /// The surface encloses a volume (KHR_materials_volume).
+  bool bounds_volume() const { return thickness > 0 && transmits(); }
 };
 
 }  // namespace vernier

@@ -54,6 +54,10 @@ struct Mixture {
     return rays;
   }
 
+  Rgb straight(const Vec3f& wo) const {
+    return glass_weight > 0 ? glass.straight(wo) * glass_weight : Rgb(0, 0, 0);
+  }
+
  private:
   float glass_prob(const Vec3f& wo) const {
     const float clear = glass_weight * luminance(glass.albedo(wo));

@@ -20,6 +20,15 @@ struct Bounds {
     lower = min(lower, b.lower);
     upper = max(upper, b.upper);
   }
+  bool contains(const Vec3f& p) const {
+    return lower.x <= p.x && lower.y <= p.y && lower.z <= p.z && p.x <= upper.x && p.y <= upper.y &&
+           p.z <= upper.z;
+  }
+  /// Both have a point in common.
+  bool touches(const Bounds& b) const {
+    return lower.x <= b.upper.x && lower.y <= b.upper.y && lower.z <= b.upper.z && b.lower.x <= upper.x &&
+           b.lower.y <= upper.y && b.lower.z <= upper.z;
+  }
   Vec3f center() const { return (lower + upper) * 0.5f; }
   /// Radius of the sphere about the center through the corners; 0 when empty.
   float radius() const { return empty() ? 0 : length(upper - lower) / 2; }

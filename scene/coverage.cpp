@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "core/sampling/sampler.h"
+#include "scene/emission.h"
 
 namespace vernier {
 namespace {
@@ -22,9 +23,8 @@ float hash_to_unit(const Ray& ray, const RawHit& hit) {
 
 bool CoverageFilter::accept(const Ray& ray, const RawHit& hit) const {
   const Material& material = materials_[material_of_instance_[hit.instance]];
-  const SurfacePoint point = geometry_.surface_point(hit.instance, hit.primitive, {hit.u, hit.v});
-  const float coverage =
-      material.coverage(material.needs_attributes() ? geometry_.attributes(point) : SurfaceAttributes{});
+  const float coverage = vernier::coverage(
+      geometry_, material, geometry_.surface_point(hit.instance, hit.primitive, {hit.u, hit.v}));
   if (coverage >= 1) return true;
   return coverage > 0 && hash_to_unit(ray, hit) < coverage;
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,8 @@ struct InstanceDescription {
   uint32_t mesh = 0;
   uint32_t material = 0;
   Transform to_world;
+  /// Instances of one number are parts of one object, and may enclose a volume together; none: its own.
+  std::optional<uint32_t> object{};
 };
 
 /// Looks along its local -z, +y up.

@@ -14,4 +14,9 @@ inline Rgb emission(const SceneGeometry& geometry, const Material& material, con
   return material.emission(attributes, front, cosine);
 }
 
+/// Part of light that meets the surface at `point` at all (glTF alphaMode).
+inline float coverage(const SceneGeometry& geometry, const Material& material, const SurfacePoint& point) {
+  return material.coverage(material.needs_attributes() ? geometry.attributes(point) : SurfaceAttributes{});
+}
+
 }  // namespace vernier

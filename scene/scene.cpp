@@ -1,5 +1,6 @@
 #include "scene/scene.h"
 
+#include <algorithm>
 #include <map>
 
 #include "core/base/names.h"
@@ -10,6 +11,15 @@
 
 namespace vernier {
 namespace {
+
+/// Names what cannot hold the volume that its material asks for.
+Notice open_volumes(std::span<const InstanceDescription> instances, const std::vector<uint32_t>& open) {
+  const std::string& name = instances[open[0]].name;
+  std::string text = name.empty() ? "instance " + std::to_string(open[0]) : "the mesh of '" + name + "'";
+  if (open.size() > 1) text += " (and " + std::to_string(open.size() - 1) + " more)";
+  return {Notice::Severity::warning, "KHR_materials_volume",
+          text + " is not closed, so it has no inside: its surface is taken for thin-walled"};
+}
 
 /// What a scene without any light is shown under: a soft sky, radiance 1 overhead falling to 0.6 at the
 /// horizon and 0.3 below it, so that shapes read and a white diffuse surface facing up shows close to 1.
@@ -27,19 +37,12 @@ std::shared_ptr<const EnvironmentDescription> default_sky() {
   return sky;
 }
 
-/// The one colour channel that a path still carries, if only one.
-std::optional<int> only_channel(const Rgb& carried) {
-  for (int c = 0; c < 3; ++c)
-    if (carried[c] != 0 && carried[(c + 1) % 3] == 0 && carried[(c + 2) % 3] == 0) return c;
-  return std::nullopt;
-}
-
 }  // namespace
 
 Scene::Scene(SceneDescription description, const Options& options)
     : geometry_(std::move(description.meshes), description.instances),
       textures_(std::move(description.textures)) {
-  compile_materials(description.materials);
+  compile_materials(description);
   if (std::any_of(materials_.begin(), materials_.end(), [](const Material& m) { return !m.is_opaque(); }))
     coverage_.emplace(geometry_, materials_, material_of_instance_);
   const auto& entry = options.accelerator.empty()
@@ -49,21 +52,40 @@ Scene::Scene(SceneDescription description, const Options& options)
   collect_lights(description);
 }
 
-void Scene::compile_materials(const std::vector<MaterialDescription>& descriptions) {
-  // A material may be used with and without vertex colours, which are two compiled materials.
-  std::map<std::pair<uint32_t, bool>, uint32_t> compiled;
+void Scene::compile_materials(const SceneDescription& description) {
+  const VolumeBoundaries boundaries(geometry_, description.instances, description.materials);
+  // A material may be used with and without vertex colours, on closed and on open surfaces: each time
+  // compiled anew.
+  std::map<std::tuple<uint32_t, bool, bool>, uint32_t> compiled;
   for (uint32_t i = 0; i < geometry_.instance_count(); ++i) {
-    const std::pair key(geometry_.material_of(i), geometry_.has_colors(i));
+    MaterialDescription material = description.materials[geometry_.material_of(i)];
+    const bool is_open = std::binary_search(boundaries.open.begin(), boundaries.open.end(), i);
+    if (is_open) material.thickness = 0;
+    const std::tuple key(geometry_.material_of(i), geometry_.has_colors(i), is_open);
     const auto [entry, is_new] = compiled.try_emplace(key, uint32_t(materials_.size()));
-    if (is_new) materials_.emplace_back(descriptions[key.first], textures_, key.second);
+    if (is_new) materials_.emplace_back(material, textures_, geometry_.has_colors(i));
     material_of_instance_.push_back(entry->second);
+  }
+  volumes_ = VolumeSet(boundaries, geometry_, materials_, material_of_instance_);
+  if (!boundaries.open.empty()) notices_.push_back(open_volumes(description.instances, boundaries.open));
+  // Boundaries that bend light stop what goes straight: of interest only to lamps, whose light is then known
+  // to be missing, and where one volume may hide the boundary of another.
+  const bool crosses_volumes = volumes_.are_nested() || !description.lights.empty();
+  for (uint32_t i = 0; i < geometry_.instance_count(); ++i) {
+    const Material& material = materials_[material_of_instance_[i]];
+    const Rgb ior = material.interior_ior();
+    const bool may_not_bend = ior.x == 1 || ior.y == 1 || ior.z == 1;
+    clear_.push_back(material.is_volume_boundary() ? crosses_volumes || may_not_bend
+                                                   : material.may_be_clear());
   }
 }
 
 Geometry Scene::accelerated_geometry() const {
   Geometry view = geometry_.view();
-  for (size_t i = 0; i < view.instances.size(); ++i)
+  for (size_t i = 0; i < view.instances.size(); ++i) {
     view.instances[i].filtered = !materials_[material_of_instance_[i]].is_opaque();
+    view.instances[i].clear = clear_[i];
+  }
   if (coverage_) view.filter = &*coverage_;
   return view;
 }
@@ -96,7 +118,7 @@ void Scene::collect_lights(const SceneDescription& description) {
     }
   }
   for (const auto& punctual : description.lights) {
-    auto light = std::make_unique<PunctualLight>(punctual, bounds());
+    auto light = std::make_unique<PunctualLight>(punctual);
     if (light->power(bounds()) > 0) add(std::move(light));
   }
   auto sky = description.environment;
@@ -125,19 +147,7 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray) const {
   return geometry_.surface_point(ray, *hit);
 }
 
-std::optional<SurfacePoint> Scene::intersect_from_camera(Ray ray) const {
-  while (auto point = intersect(ray)) {
-    const Material& material = this->material(*point);
-    if (point->front || material.double_sided() || material.is_volume_boundary()) return point;
-    // Go on behind the invisible side. Starting beyond the hit's own error keeps the parameter t of the first
-    // ray.
-    const float error = max_component(point->error) / length(ray.direction);
-    ray.t_min = std::max(next_float_up(point->t), point->t + 2 * error);
-  }
-  return std::nullopt;
-}
-
-Shading Scene::shade(const SurfacePoint& point, const Vec3f& wo, const Rgb& carried) const {
+Shading Scene::shade(const SurfacePoint& point, const Vec3f& wo, Encounter encounter) const {
   const Material& material = this->material(point);
   const SurfaceAttributes attributes =
       material.needs_attributes() ? geometry_.attributes(point) : SurfaceAttributes{};
@@ -147,7 +157,6 @@ Shading Scene::shade(const SurfacePoint& point, const Vec3f& wo, const Rgb& carr
   const auto facing = [&](const Vec3f& n) { return dot(n, wo) > 1e-4f ? n : ng; };
 
   const Vec3f smooth = geometry_.shading_normal(point);
-  Encounter encounter{point.front, {0, 0, 1}, only_channel(carried)};
   if (!material.needs_tangents())
     return {Frame::from_normal(facing(smooth * side)), ng, wo, material.bsdf(attributes, encounter)};
 

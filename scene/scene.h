@@ -11,6 +11,7 @@
 #include "scene/lights/environment.h"
 #include "scene/lights/light_set.h"
 #include "scene/shading.h"
+#include "scene/volume_set.h"
 
 namespace vernier {
 
@@ -28,17 +29,18 @@ class Scene {
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
-  /// The first surface along a ray.
+  /// The first triangle along a ray, whatever it is made of. What light meets: scene/segment.h.
   std::optional<SurfacePoint> intersect(const Ray& ray) const;
-  /// The same for rays from the camera, to which the backs of single-sided materials do not exist
-  /// (glTF 2.0, 3.9.6); all other rays meet both sides, because light does.
-  std::optional<SurfacePoint> intersect_from_camera(Ray ray) const;
-  /// Whether anything stands between the ends of a segment.
+  /// Whether any triangle lies between the ends of a segment.
   bool occluded(const Ray& segment) const { return accelerator_->occluded(segment); }
 
-  /// The scattering at a surface point toward the unit direction wo, for a path whose throughput is
-  /// `carried`: surfaces that split colours need not bother with those that it has lost.
-  Shading shade(const SurfacePoint& point, const Vec3f& wo, const Rgb& carried = {1, 1, 1}) const;
+  /// The scattering at a surface point toward the unit direction wo, which is met as `encounter` says and is
+  /// completed here.
+  Shading shade(const SurfacePoint& point, const Vec3f& wo, Encounter encounter) const;
+  /// The same in air.
+  Shading shade(const SurfacePoint& point, const Vec3f& wo) const {
+    return shade(point, wo, {.front = point.front});
+  }
 
   /// Light shining on a point, the choice among lights included in the pdf (and, for delta lights, in the
   /// radiance). u picks the light, v the point on it.
@@ -51,6 +53,7 @@ class Scene {
   const Material& material(const SurfacePoint& point) const {
     return materials_[material_of_instance_[point.instance]];
   }
+  const VolumeSet& volumes() const { return volumes_; }
   const LightSet& lights() const { return lights_; }
   const SceneGeometry& geometry() const { return geometry_; }
   const Accelerator& accelerator() const { return *accelerator_; }
@@ -61,13 +64,15 @@ class Scene {
 
  private:
   LightReceiver receiver(const SurfacePoint& point) const;
-  void compile_materials(const std::vector<MaterialDescription>& descriptions);
+  void compile_materials(const SceneDescription& description);
   void collect_lights(const SceneDescription& description);
 
   SceneGeometry geometry_;
   std::vector<Texture> textures_;
   std::vector<Material> materials_;
   std::vector<uint32_t> material_of_instance_;  ///< index into materials_
+  VolumeSet volumes_;
+  std::vector<bool> clear_;  ///< by instance: light may pass it straight on
   std::optional<CoverageFilter> coverage_;
   std::unique_ptr<Accelerator> accelerator_;
   LightSet lights_;

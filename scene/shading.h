@@ -10,7 +10,7 @@ struct ShadingSample {
   Vec3f wi;
   Rgb weight;
   float pdf, eta;
-  bool is_delta, is_transmitted;
+  bool is_delta, is_transmitted, is_straight;
 };
 
 /// A surface as light meets it from wo: the BSDF in its shading frame, spoken to in world directions.
@@ -35,14 +35,21 @@ class Shading {
     if (!local) return std::nullopt;
     const Vec3f wi = frame_.to_world(local->wi);
     if (!same_side(local->wi, wi)) return std::nullopt;
-    return ShadingSample{wi,         local->weight,     local->pdf,
-                         local->eta, local->is_delta(), local->is_transmitted()};
+    return ShadingSample{wi,
+                         local->weight,
+                         local->pdf,
+                         local->eta,
+                         local->is_delta(),
+                         local->is_transmitted(),
+                         local->is_straight()};
   }
 
   /// Whether light from wi passes through the surface.
   bool is_transmitted(const Vec3f& wi) const { return dot(wi, ng_) < 0; }
 
   Rgb albedo() const { return bsdf_.albedo(wo_); }
+  /// Fraction of light that passes on undeflected, toward -wo.
+  Rgb straight() const { return bsdf_.straight(wo_); }
 
   /// Directions in world space.
   struct Specular {

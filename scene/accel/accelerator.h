@@ -47,6 +47,7 @@ struct GeometryInstance {
   Transform to_world;     ///< identity: the mesh is in world space already and
                           ///< needs no second level
   bool filtered = false;  ///< ask Geometry::filter about hits on this instance
+  bool clear = false;     ///< light may pass it straight on: see Accelerator::occluded
 };
 
 struct Geometry {
@@ -78,6 +79,9 @@ class Accelerator {
   virtual std::optional<RawHit> closest(const Ray& ray) const = 0;
   /// Whether there is any hit in (t_min, t_max).
   virtual bool occluded(const Ray& ray) const = 0;
+  /// The same for hits on instances that are not clear. Those on clear ones are added to `passed`, in any
+  /// order and maybe repeatedly; all of them if nothing occludes.
+  virtual bool occluded(const Ray& ray, std::vector<RawHit>& passed) const = 0;
   /// Every hit in (t_min, t_max), by increasing t; replaces the contents of `sorted`. Each triangle once.
   virtual void all_hits(const Ray& ray, std::vector<RawHit>& sorted) const = 0;
 

@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "core/base/error.h"
+#include "core/math/rounding.h"
 #include "scene/accel/instance.h"
 #include "scene/accel/query.h"
 #include "scene/accel/triangle_set.h"
@@ -44,6 +45,7 @@ struct Query {
   float t_scale = 1;         ///< times Embree's t is the ray's
   const HitFilter* filter = nullptr;
   std::vector<RawHit>* collected = nullptr;
+  const std::vector<bool>* clear = nullptr;  ///< by instance
 };
 
 #if RTC_VERSION_MAJOR >= 4
@@ -102,6 +104,17 @@ void pass_ends(const RTCFilterFunctionNArguments* args) {
   if (args->valid[0] == -1 && is_at_end(*query.ray, raw_hit(*args, query))) args->valid[0] = 0;
 }
 
+/// The same, and keeps hits on clear instances while it lets the ray pass them.
+void pass_clear(const RTCFilterFunctionNArguments* args) {
+  if (args->valid[0] != -1) return;
+  const auto& query = *reinterpret_cast<const Query*>(args->context);
+  const RawHit hit = raw_hit(*args, query);
+  const bool at_end = is_at_end(*query.ray, hit);
+  if (!at_end && !(*query.clear)[hit.instance]) return;
+  if (!at_end) query.collected->push_back(hit);
+  args->valid[0] = 0;
+}
+
 /// Keeps every hit and rejects it, so that traversal goes on.
 void collect_hit(const RTCFilterFunctionNArguments* args) {
   if (args->valid[0] != -1) return;
@@ -150,11 +163,9 @@ class EmbreeAccelerator final : public Accelerator {
     return scaled && is_plain(scaled->ray) ? closest(*scaled, ray) : std::nullopt;
   }
 
-  bool occluded(const Ray& ray) const override {
-    if (is_plain(ray)) [[likely]]
-      return occluded({ray, 1}, ray);
-    const auto scaled = scaled_to_unit(ray);
-    return scaled && is_plain(scaled->ray) && occluded(*scaled, ray);
+  bool occluded(const Ray& ray) const override { return occluded(ray, nullptr); }
+  bool occluded(const Ray& ray, std::vector<RawHit>& passed) const override {
+    return occluded(ray, clear_.empty() ? nullptr : &passed);
   }
 
   void all_hits(const Ray& ray, std::vector<RawHit>& sorted) const override;
@@ -162,7 +173,13 @@ class EmbreeAccelerator final : public Accelerator {
 
  private:
   std::optional<RawHit> closest(const ScaledRay& scaled, const Ray& world) const;
-  bool occluded(const ScaledRay& scaled, const Ray& world) const;
+  bool occluded(const Ray& ray, std::vector<RawHit>* passed) const {
+    if (is_plain(ray)) [[likely]]
+      return occluded({ray, 1}, ray, passed);
+    const auto scaled = scaled_to_unit(ray);
+    return scaled && is_plain(scaled->ray) && occluded(*scaled, ray, passed);
+  }
+  bool occluded(const ScaledRay& scaled, const Ray& world, std::vector<RawHit>* passed) const;
 
   /// Embree takes direction components below 1e-18 for zero, and neither it nor the sum of squares survives
   /// coordinates beyond 1e18: other rays must be scaled first, or miss.
@@ -189,6 +206,7 @@ class EmbreeAccelerator final : public Accelerator {
   RTCError error_ = RTC_ERROR_NONE;
   std::string error_text_;
   const HitFilter* filter_;
+  std::vector<bool> clear_;  ///< by instance; empty: none is
   bool robust_;
   float farthest_origin_ = 1e18f;
   AcceleratorStats stats_;
@@ -211,6 +229,8 @@ EmbreeAccelerator::EmbreeAccelerator(const Geometry& geometry, RTCSceneFlags fla
   rtcSetDeviceErrorFunction(device_.get(), note_error, this);
   rtcSetDeviceMemoryMonitorFunction(device_.get(), note_memory, this);
   const auto start = std::chrono::steady_clock::now();
+  if (has_clear_instances(geometry))
+    for (const auto& instance : geometry.instances) clear_.push_back(instance.clear);
   scene_ = new_scene(flags);
   for (uint32_t id = 0; id < geometry.instances.size(); ++id) add_instance(id, geometry, flags);
   commit(scene_.get());
@@ -290,24 +310,28 @@ void EmbreeAccelerator::attach_placed(RTCScene mesh_scene, const Transform& to_w
 
 inline std::optional<RawHit> EmbreeAccelerator::closest(const ScaledRay& scaled, const Ray& world) const {
   RTCRayHit rayhit = embree_ray(scaled.ray, robust_);
-  Query query{{}, &world, scaled.t_scale, filter_, nullptr};
+  Query query{{}, &world, scaled.t_scale, filter_};
+  float t_min = scaled.ray.t_min;
   while (true) {
     intersect(scene_.get(), rayhit, query);
     if (rayhit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     const RawHit hit = raw_hit(rayhit.ray.tfar * scaled.t_scale, rayhit.hit);
     if (!is_at_end(world, hit)) return hit;
     // So rare that going on from there costs less than a filter, which would be called for every hit.
+    // A rounded t may be no larger than t_min, yet there must be an end.
+    t_min = std::max(rayhit.ray.tfar, next_float_up(t_min));
     Ray rest = scaled.ray;
-    rest.t_min = rayhit.ray.tfar;
+    rest.t_min = t_min;
     rayhit = embree_ray(rest, robust_);
   }
 }
 
-inline bool EmbreeAccelerator::occluded(const ScaledRay& scaled, const Ray& world) const {
+inline bool EmbreeAccelerator::occluded(const ScaledRay& scaled, const Ray& world,
+                                        std::vector<RawHit>* passed) const {
   RTCRayHit rayhit = embree_ray(scaled.ray, robust_);
-  Query query{{}, &world, scaled.t_scale, filter_, nullptr};
+  Query query{{}, &world, scaled.t_scale, filter_, passed, &clear_};
   const bool has_ends = world.leaves != TriangleId{} || world.reaches != TriangleId{};
-  occlude(scene_.get(), rayhit.ray, query, has_ends ? pass_ends : nullptr);
+  occlude(scene_.get(), rayhit.ray, query, passed ? pass_clear : has_ends ? pass_ends : nullptr);
   return rayhit.ray.tfar < 0;
 }
 

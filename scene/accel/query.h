@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <optional>
 #include <vector>
@@ -16,6 +17,11 @@ inline bool is_traceable(const Ray& ray) {
   const float size = std::abs(ray.direction.x) + std::abs(ray.direction.y) + std::abs(ray.direction.z);
   const float distance = std::abs(ray.origin.x) + std::abs(ray.origin.y) + std::abs(ray.origin.z);
   return size > 0 && size <= largest && distance <= largest && ray.t_min < ray.t_max && ray.t_max > 0;
+}
+
+inline bool has_clear_instances(const Geometry& geometry) {
+  return std::any_of(geometry.instances.begin(), geometry.instances.end(),
+                     [](const GeometryInstance& instance) { return instance.clear; });
 }
 
 /// The float before t; t > 0.

@@ -28,6 +28,7 @@ class TwoLevel : public Accelerator {
 
   std::optional<RawHit> closest(const Ray& ray) const override { return nearest(ray, nullptr); }
   bool occluded(const Ray& ray) const override;
+  bool occluded(const Ray& ray, std::vector<RawHit>& passed) const override;
   void all_hits(const Ray& ray, std::vector<RawHit>& sorted) const override;
   std::optional<QueryCost> closest_cost(const Ray& ray) const override;
   AcceleratorStats stats() const override { return stats_; }
@@ -53,6 +54,16 @@ class TwoLevel : public Accelerator {
     float t_max;
     bool offer(const RawHit&) { return true; }
   };
+  struct AnyNotClear {
+    float t_max;
+    const std::vector<GeometryInstance>& instances;
+    std::vector<RawHit>& passed;
+    bool offer(const RawHit& h) {
+      if (!instances[h.instance].clear) return true;
+      passed.push_back(h);
+      return false;
+    }
+  };
   struct All {
     float t_max;
     std::vector<RawHit>& hits;
@@ -74,6 +85,7 @@ class TwoLevel : public Accelerator {
   void bound_carrying_error();
 
   Geometry geometry_;
+  bool has_clear_;
   std::vector<std::vector<Vec3f>> baked_;
   std::vector<uint32_t> baked_instance_;
   Structure world_;
@@ -109,6 +121,14 @@ template <typename Structure, typename Test>
 bool TwoLevel<Structure, Test>::occluded(const Ray& ray) const {
   if (!is_traceable(ray)) return false;
   Any hits{below(ray.t_max)};
+  return search<false>(ray, nullptr, hits);
+}
+
+template <typename Structure, typename Test>
+bool TwoLevel<Structure, Test>::occluded(const Ray& ray, std::vector<RawHit>& passed) const {
+  if (!has_clear_) return occluded(ray);
+  if (!is_traceable(ray)) return false;
+  AnyNotClear hits{below(ray.t_max), geometry_.instances, passed};
   return search<false>(ray, nullptr, hits);
 }
 
@@ -190,7 +210,8 @@ bool TwoLevel<Structure, Test>::search(const Structure& structure, const Placed*
 }
 
 template <typename Structure, typename Test>
-TwoLevel<Structure, Test>::TwoLevel(const Geometry& geometry) : geometry_(geometry) {
+TwoLevel<Structure, Test>::TwoLevel(const Geometry& geometry)
+    : geometry_(geometry), has_clear_(has_clear_instances(geometry)) {
   const auto start = std::chrono::steady_clock::now();
   build();
   stats_.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

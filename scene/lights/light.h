@@ -7,13 +7,15 @@
 
 namespace vernier {
 
-/// Light that may reach a point from one direction, before visibility.
+/// Light that may reach a point from one direction, before what lies between.
 struct LightSample {
-  Vec3f wi;               ///< unit, from the point toward the light
-  Rgb radiance{0, 0, 0};  ///< radiance; for a delta light the irradiance on a surface facing it
+  Vec3f wi;  ///< unit, from the point toward the light
+  /// Radiance, of a light that is covered in part its mean; for a delta light the irradiance on a surface
+  /// facing it.
+  Rgb radiance{0, 0, 0};
   float pdf = 0;          ///< per solid angle; 1 for a delta light
   bool is_delta = false;  ///< cannot be met by a ray
-  Ray shadow;             ///< blocked: the light is not seen
+  Ray shadow;             ///< from the point to the light: what lies on it takes its part
 };
 
 /// Light met along a direction, and how sample() would have produced it.
@@ -31,7 +33,7 @@ class Light {
   virtual std::optional<LightSample> sample(const SurfacePoint& from, const Vec2f& u) const = 0;
 
   /// What arrives at `from` along the unit direction -wi from the point `on` of this light (null: from
-  /// infinity).
+  /// infinity), which a ray has met and which therefore is there.
   virtual LightEval eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const = 0;
 
   /// Emitted power in watts, as far as needed to choose between lights; positive if the light contributes

@@ -4,15 +4,14 @@ namespace vernier {
 
 using Kind = PunctualLightDescription::Kind;
 
-PunctualLight::PunctualLight(const PunctualLightDescription& d, const Bounds& scene)
+PunctualLight::PunctualLight(const PunctualLightDescription& d)
     : kind_(d.kind),
       position_(d.to_world.origin),
       direction_(normalize(-d.to_world.z)),
       intensity_(d.color * d.intensity),
       range_(d.range),
       cos_inner_(std::cos(d.inner_cone)),
-      cos_outer_(std::cos(d.outer_cone)),
-      reach_(4 * scene.radius() + 1) {}
+      cos_outer_(std::cos(d.outer_cone)) {}
 
 std::optional<LightSample> PunctualLight::sample(const SurfacePoint& from, const Vec2f& /*u*/) const {
   LightSample sample;
@@ -22,7 +21,6 @@ std::optional<LightSample> PunctualLight::sample(const SurfacePoint& from, const
     sample.wi = -direction_;
     sample.radiance = intensity_;
     sample.shadow = from.spawn(sample.wi);
-    sample.shadow.t_max = reach_;
     return sample;
   }
   const Vec3f to_light = position_ - from.position;

@@ -8,7 +8,7 @@ namespace vernier {
 /// Point, spot or directional light of KHR_lights_punctual: a delta light, which no ray meets.
 class PunctualLight : public Light {
  public:
-  PunctualLight(const PunctualLightDescription& description, const Bounds& scene);
+  explicit PunctualLight(const PunctualLightDescription& description);
 
   std::optional<LightSample> sample(const SurfacePoint& from, const Vec2f& u) const override;
   LightEval eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const override;
@@ -21,7 +21,6 @@ class PunctualLight : public Light {
   Vec3f position_, direction_;  ///< direction: where spot and directional lights shine to
   Rgb intensity_;
   float range_, cos_inner_, cos_outer_;
-  float reach_;  ///< length of a directional light's shadow rays
 };
 
 }  // namespace vernier

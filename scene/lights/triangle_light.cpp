@@ -121,6 +121,12 @@ Rgb TriangleLight::emission(const Vec2f& barycentrics, bool front, const Vec3f& 
   return vernier::emission(*geometry_, *material_, point, front, wo);
 }
 
+float TriangleLight::coverage(const Vec2f& barycentrics) const {
+  if (material_->is_opaque()) return 1;
+  return vernier::coverage(*geometry_, *material_,
+                           geometry_->surface_point(instance_, primitive_, barycentrics));
+}
+
 std::optional<LightSample> TriangleLight::sample(const SurfacePoint& from, const Vec2f& u) const {
   const View view(*this, from.position);
   if (view.is_dark()) return std::nullopt;
@@ -131,7 +137,7 @@ std::optional<LightSample> TriangleLight::sample(const SurfacePoint& from, const
   if (!(distance2 > 0)) return std::nullopt;
   const Vec3f wi = to_light * (1 / std::sqrt(distance2));
   const float cosine = -dot(wi, normal_);
-  const Rgb radiance = emission(place, cosine > 0, -wi);
+  const Rgb radiance = emission(place, cosine > 0, -wi) * coverage(place);
   const float pdf = view.pdf(place, distance2, std::abs(cosine));
   if (!(pdf > 0) || is_black(radiance)) return std::nullopt;
   return LightSample{wi, radiance, pdf, false, from.spawn_to(on, error_, normal_, triangle_at(place))};
@@ -183,7 +189,8 @@ void TriangleLight::measure_emission() {
         const Vec2f u((float(column) + 0.5f) / float(cells * steps),
                       (float(line) + 0.5f) / float(cells * steps));
         const Vec2f place = sample_triangle(u);
-        total += material_->emission(attributes(place), true, 1);
+        const SurfaceAttributes at = attributes(place);
+        total += material_->emission(at, true, 1) * material_->coverage(at);
       }
       float& value = values[size_t(y) * cells + x];
       value = luminance(total) / float(steps * steps);

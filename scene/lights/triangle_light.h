@@ -28,6 +28,7 @@ class TriangleLight : public Light {
   Vec3f at(const Vec2f& place) const;
   TriangleId triangle_at(const Vec2f& place) const;
   Rgb emission(const Vec2f& barycentrics, bool front, const Vec3f& wo) const;
+  float coverage(const Vec2f& barycentrics) const;
   void measure_emission();
 
   const SceneGeometry* geometry_;

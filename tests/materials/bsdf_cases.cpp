@@ -218,6 +218,12 @@ void add_layers(CaseList& list) {
                Layered({plastic(white, f0, 1, ggx(0.3f)), thin, 0.6f}, {gold, 0.5f}, {1, 0.01f}), ggx(0.1f));
   window.transmits = true;
   window.reciprocal = false;
+  const Dielectric clear{1.5f, ggx(0), white, fresnel(1.5f), true};
+  BsdfCase& pane =
+      list.add("coat and sheen on clear thin glass",
+               Layered({plastic(white, f0, 1, ggx(0.3f)), clear, 0.6f}, {gold, 0.5f}, {1, 0.01f}), ggx(0.1f));
+  pane.transmits = true;
+  pane.reciprocal = false;
 }
 
 }  // namespace

@@ -47,6 +47,28 @@ TEST(BsdfContract, SampleAgreesWithEval) {
     }
 }
 
+// What passes straight on is what sample() makes of it in the mean, which over one number is a sum of steps:
+// a fine midpoint rule finds it.
+TEST(BsdfContract, StraightIsTheMeanOfSamples) {
+  int clear = 0;
+  for (const BsdfCase& bsdf_case : bsdf_cases())
+    for (const Vec3f& wo : outgoing_directions()) {
+      SCOPED_TRACE(bsdf_case.name + " at cos " + std::to_string(wo.z));
+      constexpr int steps = 20000;
+      Vec3d mean(0, 0, 0);
+      for (int i = 0; i < steps; ++i) {
+        const auto sample = bsdf_case.bsdf.sample(wo, (float(i) + 0.5f) / steps, {0.3f, 0.6f});
+        if (!sample || !sample->is_straight()) continue;
+        ASSERT_NEAR(dot(sample->wi, wo), -1, 1e-6f);
+        mean += Vec3d(sample->weight) / steps;
+      }
+      const Rgb straight = bsdf_case.bsdf.straight(wo);
+      clear += !is_black(straight);
+      for (int c = 0; c < 3; ++c) ASSERT_NEAR(mean[c], straight[c], 2e-3 * (1 + straight[c]));
+    }
+  EXPECT_GT(clear, 10);
+}
+
 // f(wo, wi) = f(wi, wo); through the boundary n^2-scaled, with the other side's BSDF.
 TEST(BsdfContract, Reciprocity) {
   for (const BsdfCase& bsdf_case : bsdf_cases()) {

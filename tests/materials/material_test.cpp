@@ -194,7 +194,7 @@ TEST(Material, DispersionSpreadsIndices) {
   const Vec3f wo = direction(0.6f, 0);
   for (const bool front : {true, false})
     for (int c = 0; c < 3; ++c) {
-      const Bsdf glass = material.bsdf({}, {front, {0, 0, 1}, c});
+      const Bsdf glass = material.bsdf({}, {.front = front, .channel = c});
       const auto sample = glass.sample(front ? wo : direction(0.97f, 0), 0.999f, {0, 0});
       ASSERT_TRUE(sample && sample->is_transmitted());
       const float ior = 2.4f + float(c - 1) * 1.4f / 55 / 2;

@@ -31,7 +31,7 @@ TEST_P(Queries, FindsTheNearestHitWithItsBarycentrics) {
   Sheets sheets;
   const auto hit = build(sheets.soup)->closest(make_ray(above, down));
   ASSERT_TRUE(hit);
-  EXPECT_EQ(hit->t, 1);
+  EXPECT_FLOAT_EQ(hit->t, 1);  // Embree's reciprocals differ from processor to processor
   EXPECT_EQ(hit->instance, 2u);
   EXPECT_EQ(hit->primitive, 0u);
   EXPECT_FLOAT_EQ(hit->u, .625f);  // weight of the second vertex
@@ -45,7 +45,7 @@ TEST_P(Queries, ListsAllHitsByDistanceEachTriangleOnce) {
   accelerator->all_hits(make_ray(above, down), hits);
   ASSERT_EQ(hits.size(), 3u);
   for (uint32_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(hits[i].t, float(1 + i));
+    EXPECT_FLOAT_EQ(hits[i].t, float(1 + i));
     EXPECT_EQ(hits[i].instance, 2 - i);
   }
   accelerator->all_hits(make_ray(above, down, 1.5f, 2.5f), hits);
@@ -83,15 +83,22 @@ TEST_P(Queries, TakesTheIntervalAsOpen) {
     EXPECT_EQ(hit.has_value(), accelerator->occluded(ray));
     return hit ? hit->t : 0;
   };
-  EXPECT_EQ(t(0, 1), 0);
-  EXPECT_EQ(t(0, 1.0001f), 1);
-  EXPECT_EQ(t(1, infinity), 2);
-  EXPECT_EQ(t(.9999f, infinity), 1);
-  EXPECT_EQ(t(1, 2), 0);
-  EXPECT_EQ(t(3, infinity), 0);
+  std::vector<RawHit> hits;
+  accelerator->all_hits(make_ray(above, down), hits);
+  ASSERT_EQ(hits.size(), 3u);
+  const float t1 = hits[0].t, t2 = hits[1].t, t3 = hits[2].t;
+  if (GetParam().name != "embree-fast") {  // which compares t times the determinant, which rounds
+    EXPECT_EQ(t(0, t1), 0);
+    EXPECT_EQ(t(t1, infinity), t2);
+    EXPECT_EQ(t(t1, t2), 0);
+    EXPECT_EQ(t(t3, infinity), 0);
+  }
+  EXPECT_EQ(t(0, 1.0001f), t1);
+  EXPECT_EQ(t(.9999f, infinity), t1);
+  EXPECT_EQ(t(1.0001f, 1.9999f), 0);
   EXPECT_EQ(t(2, 1), 0);
   EXPECT_EQ(t(0, 0), 0);
-  EXPECT_EQ(t(-5, infinity), 1);
+  EXPECT_EQ(t(-5, infinity), t1);
   EXPECT_EQ(t(-5, -1), 0);
   EXPECT_EQ(t(infinity, infinity), 0);
   EXPECT_EQ(t(nan, infinity), 0);

@@ -112,6 +112,15 @@ SceneBuilder& SceneBuilder::texture(int width, int height, const std::vector<uin
   return *this;
 }
 
+SceneBuilder& SceneBuilder::alpha_texture(int width, int height, const std::vector<uint8_t>& alphas) {
+  auto image = std::make_shared<Image8>(width, height, 4);
+  image->values.assign(4 * alphas.size(), 255);
+  for (size_t i = 0; i < alphas.size(); ++i) image->values[4 * i + 3] = alphas[i];
+  description_.textures.emplace_back(std::move(image), WrapMode::clamp_to_edge, WrapMode::clamp_to_edge,
+                                     FilterMode::nearest);
+  return *this;
+}
+
 SceneBuilder& SceneBuilder::environment(const std::function<float(const Vec3f&)>& radiance, int height) {
   auto picture = std::make_shared<Image>(2 * height, height, 3);
   for (int y = 0; y < height; ++y)

@@ -39,6 +39,8 @@ class SceneBuilder {
   SceneBuilder& add(const PunctualLightDescription& light);
   /// A texture of grey texels that does not interpolate; materials name them in the order added.
   SceneBuilder& texture(int width, int height, const std::vector<uint8_t>& texels);
+  /// The same of white texels with this alpha.
+  SceneBuilder& alpha_texture(int width, int height, const std::vector<uint8_t>& alphas);
   /// Radiance as a function of the direction it comes from, on a picture of 2 height x height texels.
   SceneBuilder& environment(const std::function<float(const Vec3f&)>& radiance, int height = 64);
   Scene build(const std::string& accelerator = {});

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "materials/material.h"
+#include "scene/geometry.h"
+#include "scene/medium.h"
+
+namespace vernier {
+
+/// Which instances enclose a volume, alone or together. Found before materials are compiled, since a surface
+/// that should enclose one and is open has no inside: it is taken for thin-walled.
+struct VolumeBoundaries {
+  /// `instances` and `materials` of the description that `geometry` was made from.
+  VolumeBoundaries(const SceneGeometry& geometry, std::span<const InstanceDescription> instances,
+                   std::span<const MaterialDescription> materials);
+
+  struct Boundary {
+    std::vector<uint32_t> instances;
+    bool is_inward = false;  ///< fronts look to the inside
+  };
+  std::vector<Boundary> closed;
+  std::vector<uint32_t> open;  ///< instances whose material asks for a volume that they do not enclose
+};
+
+/// The regions of a scene that a medium other than air fills (KHR_materials_volume). Numbered by increasing
+/// priority: of two volumes that overlap the smaller one is there, as what lies in something else displaces
+/// it.
+class VolumeSet {
+ public:
+  VolumeSet() = default;
+  VolumeSet(const VolumeBoundaries& boundaries, const SceneGeometry& geometry,
+            std::span<const Material> materials, std::span<const uint32_t> material_of_instance);
+
+  bool empty() const { return media_.empty(); }
+  /// Number of the volume that the instance bounds; MediumStack::air for others.
+  uint32_t of_instance(uint32_t instance) const {
+    return empty() ? MediumStack::air : of_instance_[instance].volume;
+  }
+  /// A boundary is met from the outside of its volume.
+  bool is_met_from_outside(const SurfacePoint& point) const {
+    return point.front != (!empty() && of_instance_[point.instance].is_inward);
+  }
+  const Medium& medium(const MediumStack& stack) const {
+    return stack.empty() ? air_ : media_[stack.current()];
+  }
+  /// Whether the point may lie in a volume; false: it certainly lies in none.
+  bool may_contain(const Vec3f& point) const;
+  /// Some volumes touch, overlap or lie in each other.
+  bool are_nested() const { return are_nested_; }
+
+ private:
+  struct Side {
+    uint32_t volume = MediumStack::air;
+    bool is_inward = false;
+  };
+
+  Medium air_;
+  std::vector<Medium> media_;
+  std::vector<Bounds> bounds_;  ///< by volume
+  Bounds all_bounds_;
+  std::vector<Side> of_instance_;
+  bool are_nested_ = false;
+};
+
+}  // namespace vernier
