@@ -57,6 +57,10 @@ std::optional<CameraDescription> choose_camera(std::span<const CameraDescription
     }
   }
   CameraDescription camera = cameras[chosen];
+  if (!camera.defect.empty()) throw Error(ErrorKind::input, camera.defect);
+  for (const CameraDescription& other : cameras)
+    if (!other.defect.empty())
+      log.add({Notice::Severity::warning, {}, fmt::format("{}; it is not the one used", other.defect)});
   if (camera.name.empty()) camera.name = std::to_string(chosen);
   return camera;
 }

@@ -13,7 +13,7 @@ namespace vernier::apps {
 
 /// The camera called or numbered `choice`; the first one when `choice` is empty; none when there are none to
 /// choose from. An unnamed one is given its number as name. Throws Error(usage) listing the cameras there
-/// are.
+/// are, and Error(input) when the one chosen has a defect; a notice tells of others that have.
 std::optional<CameraDescription> choose_camera(std::span<const CameraDescription> cameras,
                                                const std::string& choice, NoticeLog& log);
 

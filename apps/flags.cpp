@@ -46,8 +46,13 @@ void add_scene_flags(CLI::App& command, std::string& scene, ImportOptions& optio
   command.add_option("--at", options.time, "seconds into an animation (at rest)")
       ->check(real_number(-1e9, 1e9))
       ->type_name("SECONDS");
-  command.add_option("--animation", options.animation, "that poses the scene, by name or number (the first)")
-      ->type_name("NAME|N");
+  command
+      .add_option(
+          "--animation", options.animation,
+          "that poses the scene, by name or number, or all (all if no two move the same, else the first)")
+      ->type_name("NAME|N|all");
+  command.add_flag("--allow-outside-files", options.allow_outside_files,
+                   "read files that the scene refers to outside its folder");
   command.add_flag("--strict", options.strict, "refuse a scene that is not honoured exactly");
   command.option_defaults()->group(group);
 }

@@ -91,7 +91,10 @@ ExitCode run_info(const InfoFlags& flags) {
     return ExitCode::done;
   }
   print_text(json, counts, bounds);
-  NoticeLog(false).add(scene.notices);
+  NoticeLog log(false);
+  log.add(scene.notices);
+  for (const CameraDescription& camera : scene.cameras)
+    if (!camera.defect.empty()) log.add({Notice::Severity::warning, {}, camera.defect});
   return ExitCode::done;
 }
 

@@ -6,14 +6,6 @@
 
 namespace vernier::apps {
 
-std::string one_line(std::string_view text) {
-  std::string line(text);
-  for (char& c : line)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  line.erase(line.find_last_not_of(' ') + 1);
-  return line;
-}
-
 void print_error(std::string_view text) { fmt::print(stderr, "error: {}\n", one_line(text)); }
 
 std::string describe(const Notice& notice) {

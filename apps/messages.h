@@ -5,13 +5,11 @@
 #include <string_view>
 
 #include "core/base/error.h"
+#include "core/base/one_line.h"
 
 // What the program says on standard error: one line each, "error: ...", "warning: ..." or "note: ...".
 
 namespace vernier::apps {
-
-/// `text` with line breaks and other control characters turned into spaces, so that it stays one line.
-std::string one_line(std::string_view text);
 
 void print_error(std::string_view text);
 

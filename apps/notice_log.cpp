@@ -11,7 +11,7 @@ namespace vernier::apps {
 void NoticeLog::add(const Notice& notice) {
   const std::string line = describe(notice);
   if (!seen_.insert(line).second) return;
-  notices_.push_back(notice);
+  notices_.push_back({notice.severity, one_line(notice.place), one_line(notice.text)});
   if (!quiet_) fmt::print(stderr, "{}\n", line);
 }
 

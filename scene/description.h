@@ -47,7 +47,9 @@ struct CameraDescription {
   float yfov = 0.8f;         ///< perspective: full vertical angle
   float aspect = 0;          ///< width over height; 0: that of the image
   float xmag = 1, ymag = 1;  ///< orthographic: half width and half height in metres
-  Transform to_world;
+  Transform to_world;        ///< orthonormal
+  /// Why no picture can be taken with it, as the text of an Error; empty: one can.
+  std::string defect;
 };
 
 /// KHR_lights_punctual. Position is the origin; spot and directional lights shine along local -z.

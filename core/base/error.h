@@ -1,9 +1,10 @@
 #pragma once
 
-#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "core/base/one_line.h"
 
 namespace vernier {
 
@@ -16,7 +17,7 @@ enum class ErrorKind {
 };
 
 /// The one exception that Vernier's libraries throw; only apps/ catches it.
-/// `what()` is a single line: "FILE: PLACE: PROBLEM", parts left out where there is none.
+/// `what()` is a single line of UTF-8 (one_line): "FILE: PLACE: PROBLEM", parts left out where there is none.
 class Error : public std::runtime_error {
  public:
   /// file: path as the user knows it. place: JSON pointer ("/accessors/3/count"), line, or empty.
@@ -33,10 +34,8 @@ class Error : public std::runtime_error {
     std::string line = file;
     if (!place.empty()) line += (line.empty() ? "" : ": ") + place;
     line += (line.empty() ? "" : ": ") + problem;
-    // Libraries' own messages, quoted in `problem`, may have several lines.
-    line.erase(line.find_last_not_of('\n') + 1);
-    std::replace(line.begin(), line.end(), '\n', ' ');
-    return line;
+    // File names, bytes of broken files and libraries' own messages are quoted in it.
+    return one_line(line);
   }
 
   ErrorKind kind_;

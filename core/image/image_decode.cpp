@@ -5,6 +5,11 @@
 #include <fmt/format.h>
 #include <webp/decode.h>
 
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <vector>
+
 #include "core/base/error.h"
 
 namespace vernier {
@@ -14,19 +19,50 @@ Error input_error(const std::string& file, const std::string& problem) {
   return Error(ErrorKind::input, file, {}, problem);
 }
 
-// OpenImageIO 2.4 multiplies WebP's colours by alpha whatever it is asked, so libwebp is called here.
-Image8 decode_webp(std::span<const uint8_t> bytes, const std::string& name) {
+// OpenImageIO 2.4 multiplies WebP's colours by alpha whatever it is asked, so libwebp is called here. The
+// incremental decoder also gives the rows of a file that is cut off.
+Image8 decode_webp(std::span<const uint8_t> bytes, const std::string& name, bool in_part) {
   WebPBitstreamFeatures features;
   if (WebPGetFeatures(bytes.data(), bytes.size(), &features) != VP8_STATUS_OK)
     throw input_error(name, "cannot decode webp image, it is damaged");
   if (features.has_animation)
     throw input_error(name, "animated WebP cannot be used; expected a still picture");
   Image8 image(features.width, features.height, features.has_alpha ? 4 : 3);
-  const auto decode = features.has_alpha ? WebPDecodeRGBAInto : WebPDecodeRGBInto;
-  if (!decode(bytes.data(), bytes.size(), image.values.data(), image.values.size(),
-              image.width * image.channels))
+  const std::unique_ptr<WebPIDecoder, decltype(&WebPIDelete)> decoder(
+      WebPINewRGB(features.has_alpha ? MODE_RGBA : MODE_RGB, image.values.data(), image.values.size(),
+                  image.width * image.channels),
+      WebPIDelete);
+  if (!decoder) throw Error(ErrorKind::memory, name, {}, "out of memory decoding a webp image");
+  const VP8StatusCode status = WebPIUpdate(decoder.get(), bytes.data(), bytes.size());
+  int rows = 0;
+  if (in_part && status == VP8_STATUS_SUSPENDED)
+    WebPIDecGetRGB(decoder.get(), &rows, nullptr, nullptr, nullptr);
+  if (status != VP8_STATUS_OK && rows == 0)
     throw input_error(name, "cannot decode webp image, it is damaged");
   return image;
+}
+
+/// A PNG file that is cut off, with the chunk it ends in shortened to what there is and with an end.
+std::vector<uint8_t> completed_png(std::span<const uint8_t> bytes, size_t last_chunk) {
+  std::vector<uint8_t> whole(bytes.begin(), bytes.begin() + ptrdiff_t(last_chunk));
+  const auto add_word = [&](uint32_t word) {
+    for (int shift = 24; shift >= 0; shift -= 8) whole.push_back(uint8_t(word >> shift));
+  };
+  const auto add_chunk = [&](std::span<const uint8_t> type_and_data) {
+    add_word(uint32_t(type_and_data.size() - 4));
+    whole.insert(whole.end(), type_and_data.begin(), type_and_data.end());
+    add_word(png_checksum(type_and_data));
+  };
+  const auto rest = bytes.subspan(last_chunk);
+  if (rest.size() > 8 && std::memcmp(&rest[4], "IDAT", 4) == 0) {
+    // The checksum may be there in part.
+    const size_t length = std::min<size_t>(
+        rest.size() - 8, size_t(rest[0]) << 24 | size_t(rest[1]) << 16 | size_t(rest[2]) << 8 | rest[3]);
+    add_chunk(rest.subspan(4, 4 + length));
+  }
+  const uint8_t end[] = {'I', 'E', 'N', 'D'};
+  add_chunk(end);
+  return whole;
 }
 
 template <typename T>
@@ -38,25 +74,32 @@ BasicImage<T> convert(Image8 image) {
   return converted;
 }
 
+/// Reads what there is: of an image that breaks off, when `in_part`, the rows before that, if any.
 template <typename T>
-BasicImage<T> read_all_channels(OIIO::ImageInput& input, const std::string& name) {
+BasicImage<T> read_all_channels(OIIO::ImageInput& input, const std::string& name, bool in_part) {
   const OIIO::ImageSpec spec = input.spec();
   BasicImage<T> image(spec.width, spec.height, spec.nchannels);
+  const OIIO::TypeDesc type = OIIO::BaseTypeFromC<T>::value;
   input.threads(1);  // callers decode many images at once
-  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::BaseTypeFromC<T>::value, image.values.data()))
-    throw input_error(name, fmt::format("cannot decode image, it is damaged: {}", input.geterror()));
+  if (!in_part) {
+    if (!input.read_image(0, 0, 0, spec.nchannels, type, image.values.data()))
+      throw input_error(name, fmt::format("cannot decode image, it is damaged: {}", input.geterror()));
+    return image;
+  }
+  int rows = 0;
+  while (rows < spec.height && input.read_scanline(rows, 0, type, image.pixel(0, rows))) ++rows;
+  if (rows == 0) throw input_error(name, fmt::format("cannot decode image: {}", input.geterror()));
+  if (rows < spec.height) input.geterror();
   return image;
 }
 
 template <typename T>
 BasicImage<T> decode(std::span<const uint8_t> bytes, const ImageHeader& header, const std::string& name,
-                     const ImageLimits& limits) {
-  check_image_size(name, header.width, header.height, 1, bytes.size(), limits);
-  if (!header.intact)
-    throw input_error(name,
-                      fmt::format("{} image is truncated or damaged ({} bytes); get a whole copy of the file",
-                                  header.format, bytes.size()));
-  if (header.format == std::string_view("webp")) return convert<T>(decode_webp(bytes, name));
+                     bool in_part) {
+  if (header.format == std::string_view("webp")) return convert<T>(decode_webp(bytes, name, in_part));
+  std::vector<uint8_t> completed;
+  if (in_part && header.format == std::string_view("png"))
+    bytes = completed = completed_png(bytes, header.last_chunk);
   OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
   const auto input = OIIO::ImageInput::create(header.format);
   if (!input)
@@ -68,7 +111,35 @@ BasicImage<T> decode(std::span<const uint8_t> bytes, const ImageHeader& header, 
   // The name's extension must be the format's: some readers check it.
   if (!input->open(fmt::format("memory.{}", header.format), spec, config))
     throw input_error(name, fmt::format("cannot decode {} image: {}", header.format, input->geterror()));
-  return read_all_channels<T>(*input, name);
+  return read_all_channels<T>(*input, name, in_part);
+}
+
+std::string description_of_damage(const ImageHeader& header, size_t size) {
+  return fmt::format("{} image is truncated or damaged ({} bytes); get a whole copy of the file",
+                     header.format, size);
+}
+
+/// Of a file that is whole.
+template <typename T>
+BasicImage<T> decode_whole(std::span<const uint8_t> bytes, const ImageHeader& header, const std::string& name,
+                           const ImageLimits& limits) {
+  check_image_size(name, header.width, header.height, 1, bytes.size(), limits);
+  if (!header.intact) throw input_error(name, description_of_damage(header, bytes.size()));
+  return decode<T>(bytes, header, name, false);
+}
+
+ImageHeader parse_header(std::span<const uint8_t> bytes, const std::string& name) {
+  const auto header = parse_image_header(bytes);
+  if (!header)
+    throw input_error(name, bytes.empty() ? "image has no bytes"
+                                          : "not a PNG, JPEG or WebP image; convert it to one of these");
+  return *header;
+}
+
+Image8 checked(Image8 image, const std::string& name) {
+  if (image.channels > 4)
+    throw input_error(name, fmt::format("image has {} channels; expected 1 to 4", image.channels));
+  return image;
 }
 
 }  // namespace
@@ -97,18 +168,21 @@ void check_image_size(const std::string& name, int64_t width, int64_t height, in
 
 Image decode_image(std::span<const uint8_t> bytes, const ImageHeader& header, const std::string& name,
                    const ImageLimits& limits) {
-  return decode<float>(bytes, header, name, limits);
+  return decode_whole<float>(bytes, header, name, limits);
+}
+
+PartialImage8 decode_partial_image8(std::span<const uint8_t> bytes, const std::string& name,
+                                    const ImageLimits& limits) {
+  const ImageHeader header = parse_header(bytes, name);
+  if (!header.cut_off || header.intact)
+    return {checked(decode_whole<uint8_t>(bytes, header, name, limits), name), {}};
+  check_image_size(name, header.width, header.height, 1, bytes.size(), limits);
+  return {checked(decode<uint8_t>(bytes, header, name, true), name),
+          description_of_damage(header, bytes.size()) + "; what it holds is used"};
 }
 
 Image8 decode_image8(std::span<const uint8_t> bytes, const std::string& name, const ImageLimits& limits) {
-  const auto header = parse_image_header(bytes);
-  if (!header)
-    throw input_error(name, bytes.empty() ? "image has no bytes"
-                                          : "not a PNG, JPEG or WebP image; convert it to one of these");
-  Image8 image = decode<uint8_t>(bytes, *header, name, limits);
-  if (image.channels > 4)
-    throw input_error(name, fmt::format("image has {} channels; expected 1 to 4", image.channels));
-  return image;
+  return checked(decode_whole<uint8_t>(bytes, parse_header(bytes, name), name, limits), name);
 }
 
 }  // namespace vernier

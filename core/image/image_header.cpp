@@ -35,15 +35,15 @@ ImageHeader parse_png(Bytes bytes) {
     header.height = big_endian(bytes, 20, 4);
   }
   size_t at = 8;
-  while (!header.intact && at + 12 <= bytes.size()) {
+  for (header.cut_off = true; !header.intact && at + 12 <= bytes.size();) {
     const size_t length = size_t(big_endian(bytes, at, 4));
     if (length > bytes.size() - at - 12) break;
-    boost::crc_32_type checksum;
-    checksum.process_bytes(&bytes[at + 4], length + 4);
-    if (checksum.checksum() != big_endian(bytes, at + 8 + length, 4)) break;
+    header.cut_off = png_checksum(bytes.subspan(at + 4, length + 4)) == big_endian(bytes, at + 8 + length, 4);
+    if (!header.cut_off) break;
     header.intact = has_text(bytes, at + 4, "IEND");
     at += 12 + length;
   }
+  header.last_chunk = at;
   return header;
 }
 
@@ -56,6 +56,7 @@ bool is_start_of_frame(uint8_t marker) {
 // segment and is skipped.
 ImageHeader parse_jpeg(Bytes bytes) {
   ImageHeader header{"jpeg"};
+  header.cut_off = true;
   size_t at = 2;
   while (at + 2 <= bytes.size()) {
     const uint8_t marker = bytes[at + 1];
@@ -82,6 +83,7 @@ ImageHeader parse_jpeg(Bytes bytes) {
 ImageHeader parse_webp(Bytes bytes) {
   ImageHeader header{"webp"};
   header.intact = int64_t(bytes.size()) >= little_endian(bytes, 4, 4) + 8;
+  header.cut_off = !header.intact;
   if (bytes.size() < 30) return header;
   if (has_text(bytes, 12, "VP8 ")) {
     header.width = little_endian(bytes, 26, 2) & 0x3fff;
@@ -98,6 +100,12 @@ ImageHeader parse_webp(Bytes bytes) {
 }
 
 }  // namespace
+
+uint32_t png_checksum(std::span<const uint8_t> type_and_data) {
+  boost::crc_32_type checksum;
+  checksum.process_bytes(type_and_data.data(), type_and_data.size());
+  return checksum.checksum();
+}
 
 std::optional<ImageHeader> parse_image_header(std::span<const uint8_t> bytes) {
   if (has_text(bytes, 0, "\x89PNG\r\n\x1a\n")) return parse_png(bytes);

@@ -52,9 +52,19 @@ struct LayeredImage {
 /// As read_image, with every channel of the file's first part.
 LayeredImage read_layers(const std::string& path, const ImageLimits& limits = {});
 
+/// A picture as far as its file has it.
+struct PartialImage8 {
+  Image8 image;
+  std::string damage;  ///< empty: whole; else what is wrong with the file: "the JPEG file is truncated, ..."
+};
+
 /// Decodes a PNG, JPEG or WebP held in memory to 8 bits a channel, in the file's own encoding, 1 to 4
-/// channels, unassociated alpha; sixteen bits are rounded to eight. `name` is what errors call it. A
-/// truncated file is an error.
+/// channels, unassociated alpha; sixteen bits are rounded to eight. `name` is what errors call it. What a
+/// truncated file still holds is shown, as browsers do; it is an error when that is nothing at all.
+PartialImage8 decode_partial_image8(std::span<const uint8_t> bytes, const std::string& name,
+                                    const ImageLimits& limits = {});
+
+/// The same of a whole file; a truncated one is an error.
 Image8 decode_image8(std::span<const uint8_t> bytes, const std::string& name, const ImageLimits& limits = {});
 
 /// Writes float channels as OpenEXR with ZIP compression. `channel_names` has image.channels entries ("R",

@@ -17,23 +17,34 @@ struct Bytes {
   std::span<const uint8_t> span() const { return {data.get(), size}; }
 };
 
-/// Reads the scene file and what its URIs refer to, all of it regular files inside the scene file's folder.
-/// Callable from many threads. Throws Error(input).
+/// What a URI refers to.
+struct AssetContent {
+  Bytes bytes;
+  std::string problem;  ///< why there are no bytes: "'a.png' is missing: ..."; empty: there are
+  std::string remark;   ///< what a user should know all the same; empty: nothing
+};
+
+/// Reads the scene file and what its URIs refer to, all of it regular files, and all of it inside the scene
+/// file's folder unless `allow_outside` is given. Callable from many threads.
 class AssetFiles {
  public:
-  explicit AssetFiles(std::string scene_path);
+  /// Throws Error(input) when the scene file's folder cannot be read.
+  explicit AssetFiles(std::string scene_path, bool allow_outside = false);
 
   const std::string& scene_path() const { return scene_path_; }
+  /// Throws Error(input).
   Bytes read_scene() const;
 
-  /// Bytes of a data URI or of a relative, percent-encoded reference. `place` is the JSON pointer of the URI.
-  Bytes read_uri(const std::string& uri, const std::string& place) const;
+  /// Content of a data URI or of a relative, percent-encoded reference. `place` is the JSON pointer of the
+  /// URI. Throws Error(input) on a reference that is not to be followed, whether or not there is a file.
+  AssetContent read_uri(const std::string& uri, const std::string& place) const;
 
  private:
-  Bytes read_relative(const std::string& uri, const std::string& place) const;
+  AssetContent read_reference(const std::string& uri, const std::string& place) const;
 
   std::string scene_path_;
   std::string folder_;  ///< canonical
+  bool allow_outside_ = false;
 };
 
 /// 128-bit fingerprint as 32 hexadecimal digits; the same on every machine, not meant against forgery.

@@ -6,7 +6,8 @@
 
 namespace vernier {
 
-/// Adds the cameras and punctual lights of the scene's nodes. Throws Error(input).
+/// Adds the cameras and punctual lights of the scene's nodes. A light whose node leaves it no direction is
+/// left out with a notice; such a camera has a defect. Throws Error(input).
 void add_cameras_and_lights(const Document& document, const NodePlaces& places, SceneDescription& scene);
 
 }  // namespace vernier

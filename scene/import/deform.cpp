@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "scene/import/accessors.h"
 
 namespace vernier {
@@ -21,6 +23,11 @@ void set_direction(Vec4f& tangent, const Vec3f& direction) {
 template <typename V>
 void add_scaled(std::vector<V>& values, const std::vector<V>& deltas, float weight) {
   for (size_t i = 0; i < values.size() && i < deltas.size(); ++i) values[i] += deltas[i] * weight;
+}
+
+void clamp_colors(std::vector<Vec4f>& colors) {
+  for (auto& color : colors)
+    for (int c = 0; c < 4; ++c) color[c] = std::clamp(color[c], 0.f, 1.f);
 }
 
 /// Joints and weights of one vertex: sets of four (JOINTS_0, JOINTS_1, ...).
@@ -67,8 +74,10 @@ Vec3d transformed_normal(const Vec3f& n, const Vec3d& x, const Vec3d& y, const V
 
 }  // namespace
 
-void morph(const PrimitiveData& data, const std::vector<double>& weights, MeshDescription& mesh) {
+void morph(const PrimitiveData& data, const std::vector<double>& weights, const std::array<int, 2>& texcoords,
+           MeshDescription& mesh) {
   const auto old_normals = mesh.normals;
+  bool colors_change = false;
   for (size_t target = 0; target < weights.size() && target < data.target_count(); ++target) {
     const float weight = float(weights[target]);
     if (weight == 0) continue;
@@ -81,9 +90,13 @@ void morph(const PrimitiveData& data, const std::vector<double>& weights, MeshDe
     }
     for (size_t set = 0; set < mesh.texcoords.size(); ++set)
       if (!mesh.texcoords[set].empty())
-        add_scaled(mesh.texcoords[set], data.read_target<Vec2f>(target, fmt::format("TEXCOORD_{}", set)),
-                   weight);
+        add_scaled(mesh.texcoords[set],
+                   data.read_target<Vec2f>(target, fmt::format("TEXCOORD_{}", texcoords[set])), weight);
+    const auto color_deltas = mesh.colors.empty() ? mesh.colors : data.read_target_colors(target);
+    add_scaled(mesh.colors, color_deltas, weight);
+    colors_change = colors_change || !color_deltas.empty();
   }
+  if (colors_change) clamp_colors(mesh.colors);
   for (size_t i = 0; i < mesh.normals.size(); ++i) mesh.normals[i] = unit_or(mesh.normals[i], old_normals[i]);
   for (auto& t : mesh.tangents) set_direction(t, unit_or(Vec3f(t.x, t.y, t.z), Vec3f(1, 0, 0)));
 }

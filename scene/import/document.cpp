@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
 #include "scene/import/container.h"
+#include "scene/import/features.h"
+#include "scene/import/json_text.h"
 #include "scene/import/meshopt.h"
 #include "scene/import/ordered_parallel.h"
 #include "scene/import/schema.h"
@@ -15,43 +18,6 @@ namespace vernier {
 namespace {
 
 using nlohmann::json;
-
-// tinygltf walks nested values recursively; real files stay below twenty levels.
-constexpr int max_json_depth = 128;
-
-/// Throws Error(input) when arrays and objects are nested deeper than max_json_depth.
-void check_depth(std::span<const uint8_t> text, const std::string& file) {
-  int depth = 0;
-  bool in_string = false;
-  for (size_t i = 0; i < text.size(); ++i) {
-    const uint8_t c = text[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      if (c == '"') in_string = false;
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '{' || c == '[') {
-      if (++depth > max_json_depth)
-        throw Error(ErrorKind::input, file, fmt::format("byte {}", i),
-                    fmt::format("JSON nested deeper than {} levels", max_json_depth));
-    } else if (c == '}' || c == ']') {
-      --depth;
-    }
-  }
-}
-
-json parse_json(std::span<const uint8_t> text, const std::string& file) {
-  check_depth(text, file);
-  try {
-    return json::parse(text.begin(), text.end());
-  } catch (const json::exception& e) {
-    // "[json.exception.parse_error.101] parse error at line 3, column 5: ..." and the like.
-    std::string message = e.what();
-    if (const size_t end = message.find("] "); end != std::string::npos) message.erase(0, end + 2);
-    if (message.size() > 300) message = message.substr(0, 297) + "...";
-    throw Error(ErrorKind::input, file, "JSON", message);
-  }
-}
 
 /// Version 1.0 is another format altogether, which is said before the schema finds everything in it wrong; so
 /// nothing is known of the types here.
@@ -66,21 +32,41 @@ void check_version(const json& root, const std::string& file) {
                 fmt::format("glTF {} cannot be read, only 2.0; convert the file to glTF 2.0", version));
 }
 
+/// An extension that is required and not honoured may make anything look wrong, so it is named first; nothing
+/// is known of the types here either.
+void check_required_extensions(const json& root, const std::string& file) {
+  const auto required = root.find("extensionsRequired");
+  if (required == root.end() || !required->is_array()) return;
+  for (size_t i = 0; i < required->size(); ++i) {
+    if (!(*required)[i].is_string()) continue;
+    const FeatureUse use = extension_use((*required)[i].get<std::string>());
+    if (use.status == FeatureUse::Status::ignored)
+      throw Error(ErrorKind::input, file, fmt::format("/extensionsRequired/{}", i),
+                  fmt::format("the file requires {}, which is not supported: {}", use.name, use.note));
+  }
+}
+
+/// Both name the same thing; the second adds to what its data may be.
+constexpr std::array<const char*, 2> meshopt_names{"EXT_meshopt_compression", "KHR_meshopt_compression"};
+
 bool is_meshopt_fallback(const json& buffer) {
-  if (!buffer.contains("extensions") || !buffer["extensions"].contains("EXT_meshopt_compression"))
-    return false;
-  return buffer["extensions"]["EXT_meshopt_compression"].value("fallback", false);
+  if (!buffer.contains("extensions")) return false;
+  const json& extensions = buffer["extensions"];
+  return std::any_of(meshopt_names.begin(), meshopt_names.end(), [&](const char* name) {
+    return extensions.contains(name) && extensions[name].value("fallback", false);
+  });
 }
 
 }  // namespace
 
-Document::Document(const std::string& path) : files_(path) {
+Document::Document(const std::string& path, bool allow_outside_files) : files_(path, allow_outside_files) {
   Bytes file = files_.read_scene();
   fingerprints_.push_back(fingerprint(file.span()));
   const Container container = split_container(file.span(), path);
   json root = parse_json(container.json, path);
   check_version(root, path);
-  check_against_schema(root, gltf_schema(), path);
+  check_required_extensions(root, path);
+  check_against_schema(root, gltf_schema(), path, notices_);
   read_buffers(root, container.binary);
   if (!container.binary.empty()) storage_.push_back(std::move(file));
   read_image_sources(root);
@@ -105,7 +91,11 @@ void Document::read_buffers(const json& root, std::span<const uint8_t> binary_ch
       continue;
     }
     if (buffer.contains("uri")) {
-      storage_.push_back(files_.read_uri(buffer["uri"].get_ref<const std::string&>(), place + "/uri"));
+      AssetContent content = files_.read_uri(buffer["uri"].get_ref<const std::string&>(), place + "/uri");
+      if (!content.problem.empty()) fail(place + "/uri", content.problem);
+      if (!content.remark.empty())
+        notices_.push_back({Notice::Severity::warning, place + "/uri", content.remark});
+      storage_.push_back(std::move(content.bytes));
       bytes = storage_.back().span();
       fingerprints_.push_back(fingerprint(bytes));
     } else if (bytes.empty()) {
@@ -128,9 +118,28 @@ void Document::read_image_sources(const json& root) {
   }
 }
 
+void Document::complete_spot_lights(json& root) {
+  const json::json_pointer lights("/extensions/KHR_lights_punctual/lights");
+  if (!root.contains(lights)) return;
+  for (size_t i = 0; i < root[lights].size(); ++i) {
+    json& light = root[lights][i];
+    if (light["type"] != "spot" || light.contains("spot")) continue;
+    light["spot"] = json::object();
+    notices_.push_back({Notice::Severity::warning, fmt::format("{}/{}", lights.to_string(), i),
+                        "'spot' is missing; the default cone is used"});
+  }
+}
+
 void Document::parse_model(json& root) {
   root.erase("buffers");
   root.erase("images");
+  // Nothing needs the bounds of accessors, and some cannot be parsed as numbers.
+  if (root.contains("accessors"))
+    for (auto& accessor : root["accessors"]) {
+      accessor.erase("min");
+      accessor.erase("max");
+    }
+  complete_spot_lights(root);
   // tinygltf refuses indices whose accessor has no buffer view, as compressed and sparse ones have not. They
   // get one that does not exist, and it is taken away again below.
   const int no_view = root.contains("bufferViews") ? int(root["bufferViews"].size()) : 0;
@@ -169,27 +178,31 @@ void Document::locate_views() {
   std::vector<Bytes> decoded(views.size());
   for_each_in_parallel(views.size(), [&](size_t i) {
     const std::string place = fmt::format("/bufferViews/{}", i);
-    const auto compression = views[i].extensions.find("EXT_meshopt_compression");
-    if (compression == views[i].extensions.end()) {
-      views_[i] = locate(views[i].buffer, views[i].byteOffset, views[i].byteLength, place);
+    for (const char* name : meshopt_names) {
+      const auto compression = views[i].extensions.find(name);
+      if (compression == views[i].extensions.end()) continue;
+      decoded[i] = decompress(compression->second, place + "/extensions/" + name);
+      views_[i] = decoded[i].span();
       return;
     }
-    const auto& values = compression->second;
-    const auto size = [&](const char* name) { return size_t(values.Get(name).GetNumberAsInt()); };
-    MeshoptView view;
-    view.compressed =
-        locate(values.Get("buffer").GetNumberAsInt(), values.Has("byteOffset") ? size("byteOffset") : 0,
-               size("byteLength"), place + "/extensions/EXT_meshopt_compression");
-    view.count = size("count");
-    view.stride = size("byteStride");
-    view.mode = values.Get("mode").Get<std::string>();
-    view.filter = values.Has("filter") ? values.Get("filter").Get<std::string>() : "NONE";
-    if (const std::string problem = decode_meshopt(view, decoded[i]); !problem.empty())
-      fail(place + "/extensions/EXT_meshopt_compression", problem);
-    views_[i] = decoded[i].span();
+    views_[i] = locate(views[i].buffer, views[i].byteOffset, views[i].byteLength, place);
   });
   for (auto& bytes : decoded)
     if (bytes.data) storage_.push_back(std::move(bytes));
+}
+
+Bytes Document::decompress(const tinygltf::Value& meshopt, const std::string& place) const {
+  const auto size = [&](const char* name) { return size_t(meshopt.Get(name).GetNumberAsInt()); };
+  MeshoptView view;
+  view.compressed = locate(meshopt.Get("buffer").GetNumberAsInt(),
+                           meshopt.Has("byteOffset") ? size("byteOffset") : 0, size("byteLength"), place);
+  view.count = size("count");
+  view.stride = size("byteStride");
+  view.mode = meshopt.Get("mode").Get<std::string>();
+  view.filter = meshopt.Has("filter") ? meshopt.Get("filter").Get<std::string>() : "NONE";
+  Bytes decoded;
+  if (const std::string problem = decode_meshopt(view, decoded); !problem.empty()) fail(place, problem);
+  return decoded;
 }
 
 }  // namespace vernier

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/error.h"
 #include "scene/import/asset_files.h"
 
 // Only sources under scene/import include this header, since it brings tinygltf in.
@@ -24,8 +25,8 @@ struct ImageSource {
 /// `model.images` are empty.
 class Document {
  public:
-  /// Reads the scene file and its buffers. Throws Error(input).
-  explicit Document(const std::string& path);
+  /// Reads the scene file and its buffers; `allow_outside_files` as in ImportOptions. Throws Error(input).
+  explicit Document(const std::string& path, bool allow_outside_files = false);
 
   const AssetFiles& files() const { return files_; }
   const tinygltf::Model& model() const { return model_; }
@@ -37,6 +38,9 @@ class Document {
   /// Fingerprints of the scene file and the buffers read, in order.
   const std::vector<std::string>& fingerprints() const { return fingerprints_; }
 
+  /// What was put right while reading.
+  const std::vector<Notice>& notices() const { return notices_; }
+
   /// Throws Error(input) about this file; `place` is a JSON pointer.
   [[noreturn]] void fail(const std::string& place, const std::string& problem) const;
 
@@ -44,7 +48,11 @@ class Document {
   void read_buffers(const nlohmann::json& json, std::span<const uint8_t> binary_chunk);
   void read_image_sources(const nlohmann::json& json);
   void parse_model(nlohmann::json& json);
+  /// Gives spot lights without a cone, which tinygltf refuses, the default one.
+  void complete_spot_lights(nlohmann::json& root);
   void locate_views();
+  /// The bytes that a buffer view's meshopt extension stands for.
+  Bytes decompress(const tinygltf::Value& meshopt, const std::string& place) const;
   std::span<const uint8_t> locate(int buffer, size_t offset, size_t length, const std::string& place) const;
 
   AssetFiles files_;
@@ -53,6 +61,7 @@ class Document {
   std::vector<std::span<const uint8_t>> buffers_, views_;
   std::vector<ImageSource> images_;
   std::vector<std::string> fingerprints_;
+  std::vector<Notice> notices_;
 };
 
 }  // namespace vernier

@@ -1,6 +1,7 @@
 #include "scene/import/features.h"
 
 #include <fmt/format.h>
+#include <tiny_gltf.h>
 
 #include <algorithm>
 #include <string_view>
@@ -35,6 +36,10 @@ constexpr ExtensionEntry extensions[] = {
      "one index each for red, green and blue (Implementation), not one a wavelength"},
     {"KHR_materials_iridescence", Status::exact,
      "per facet, with the extension's own simplified Fresnel terms (Iridescence Fresnel)"},
+    {"KHR_materials_pbrSpecularGlossiness", Status::approximated,
+     "archived; its specular colour becomes that of a dielectric (KHR_materials_specular with an index of 0) "
+     "and 1 - glossiness its roughness; the layer takes from the diffuse colour what it reflects to each "
+     "side, not the same to all"},
     {"KHR_materials_sheen", Status::exact,
      "Charlie with two-sided albedo scaling (Sheen layering); roughness below 0.05 is taken for that"},
     {"KHR_materials_emissive_strength", Status::exact, "factor times strength is radiance in W/(m^2 sr)"},
@@ -45,14 +50,13 @@ constexpr ExtensionEntry extensions[] = {
     {"KHR_materials_volume", Status::exact,
      "the mesh is the boundary, so thickness only tells volumes from thin walls; volumes do not nest"},
     {"KHR_materials_variants", Status::exact, "one variant at a time, by name"},
+    {"KHR_meshopt_compression", Status::exact, "as far as the library decodes it, else refused"},
     {"KHR_mesh_quantization", Status::exact, ""},
     {"KHR_node_visibility", Status::exact, ""},
     {"KHR_texture_transform", Status::exact, ""},
     {"KHR_xmp_json_ld", Status::exact, "metadata, nothing to render"},
 
     {"KHR_animation_pointer", Status::ignored, "only nodes and morph weights are animated"},
-    {"KHR_materials_pbrSpecularGlossiness", Status::ignored,
-     "archived; the metallic-roughness values are used"},
     {"MSFT_lod", Status::ignored, "the most detailed level is rendered"},
     {"KHR_texture_basisu", Status::ignored, "the texture's PNG or JPEG source is used when it has one"},
 };
@@ -76,16 +80,27 @@ bool uses_morph_targets(const tinygltf::Model& model) {
   return false;
 }
 
+bool uses_more_colors(const tinygltf::Model& model) {
+  for (const auto& mesh : model.meshes)
+    for (const auto& primitive : mesh.primitives)
+      if (primitive.attributes.count("COLOR_1")) return true;
+  return false;
+}
+
 bool uses_mipmaps(const tinygltf::Model& model) {
   return std::any_of(model.samplers.begin(), model.samplers.end(),
                      [](const auto& sampler) { return sampler.minFilter >= 9984; });
 }
 
 constexpr CoreEntry core_features[] = {
-    {"animations", Status::exact, "one animation poses the scene at the time asked for, else it is at rest",
+    {"animations", Status::exact,
+     "the scene is at rest unless --at gives a time; then --animation says by which one, or by all, it is "
+     "posed",
      [](const tinygltf::Model& model) { return !model.animations.empty(); }},
     {"material.occlusionTexture", Status::ignored,
      "light transport computes occlusion itself (glTF 2.0, 3.9.3)", uses_occlusion},
+    {"mesh.primitive.attributes COLOR_1 and up", Status::exact,
+     "only COLOR_0 multiplies the base colour (glTF 2.0, 3.9.2); the others mean nothing", uses_more_colors},
     {"mesh.primitive.targets", Status::exact, "morphed by the weights at that time", uses_morph_targets},
     {"sampler.minFilter mipmaps", Status::exact, "the samples of a pixel average the texels they meet",
      uses_mipmaps},
@@ -93,30 +108,23 @@ constexpr CoreEntry core_features[] = {
      [](const tinygltf::Model& model) { return !model.skins.empty(); }},
 };
 
-FeatureUse extension_use(const std::string& name) {
-  for (const auto& entry : extensions)
-    if (entry.name == name) return {name, entry.status, std::string(entry.note)};
-  return {name, Status::ignored, "this extension is not known"};
-}
-
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 }  // namespace
 
-std::vector<FeatureUse> report_features(const Document& document) {
-  const auto& model = document.model();
+FeatureUse extension_use(const std::string& name) {
+  for (const auto& entry : extensions)
+    if (entry.name == name) return {name, entry.status, std::string(entry.note)};
+  return {name, Status::ignored, "this extension is not known"};
+}
+
+std::vector<FeatureUse> report_features(const tinygltf::Model& model) {
   std::vector<FeatureUse> features;
   for (const auto& name : model.extensionsUsed) features.push_back(extension_use(name));
-  for (size_t i = 0; i < model.extensionsRequired.size(); ++i) {
-    const std::string& name = model.extensionsRequired[i];
-    const FeatureUse use = extension_use(name);
-    if (use.status == Status::ignored)
-      document.fail(fmt::format("/extensionsRequired/{}", i),
-                    fmt::format("the file requires {}, which is not supported: {}", name, use.note));
-    if (!contains(model.extensionsUsed, name)) features.push_back(use);
-  }
+  for (const auto& name : model.extensionsRequired)
+    if (!contains(model.extensionsUsed, name)) features.push_back(extension_use(name));
   for (const auto& entry : core_features)
     if (entry.used(model))
       features.push_back({std::string(entry.name), entry.status, std::string(entry.note)});

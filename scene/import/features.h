@@ -4,13 +4,18 @@
 #include <vector>
 
 #include "scene/description.h"
-#include "scene/import/document.h"
+
+namespace tinygltf {
+class Model;
+}
 
 namespace vernier {
 
-/// How each extension that the file uses, and each core feature worth a word, is honoured. Throws
-/// Error(input) naming the first required extension that is not.
-std::vector<FeatureUse> report_features(const Document& document);
+/// How an extension is honoured.
+FeatureUse extension_use(const std::string& name);
+
+/// How each extension that the file uses, and each core feature worth a word, is honoured.
+std::vector<FeatureUse> report_features(const tinygltf::Model& model);
 
 /// "NAME is ignored: NOTE"
 std::string describe(const FeatureUse& feature);

@@ -9,13 +9,13 @@ namespace {
 using Kind = ValueRule::Kind;
 // 2^53 and 2^31 - 1: sizes that survive a double, and those that tinygltf keeps in an int.
 constexpr double max_size = 9007199254740992.0, max_int = 2147483647.0;
-constexpr double max_float = std::numeric_limits<float>::max();
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 ValueRule boolean() { return {.kind = Kind::boolean}; }
 ValueRule text(std::vector<std::string> names = {}) {
   return {.kind = Kind::text, .names = std::move(names)};
 }
-ValueRule number(double lower = -max_float, double upper = max_float) {
+ValueRule number(double lower = -infinity, double upper = infinity) {
   return {.kind = Kind::number, .lower = lower, .upper = upper};
 }
 ValueRule integer(double lower, double upper) {
@@ -52,7 +52,7 @@ struct GltfSchema {
                                   {}};
   const ValueRule texture = object(texture_info);
 
-  const ObjectSchema emissive_strength{{{"emissiveStrength", number(0)}}, {}};
+  const ObjectSchema emissive_strength{{{"emissiveStrength", number()}}, {}};
   const ObjectSchema ior{{{"ior", number(0)}}, {}};
   const ObjectSchema specular{{{"specularFactor", number()},
                                {"specularTexture", texture},
@@ -62,7 +62,7 @@ struct GltfSchema {
   const ObjectSchema transmission{{{"transmissionFactor", number()}, {"transmissionTexture", texture}}, {}};
   const ObjectSchema volume{{{"thicknessFactor", number(0)},
                              {"thicknessTexture", texture},
-                             {"attenuationDistance", number(1e-30)},
+                             {"attenuationDistance", number()},
                              {"attenuationColor", numbers(3)}},
                             {}};
   const ObjectSchema clearcoat{{{"clearcoatFactor", number()},
@@ -92,6 +92,12 @@ struct GltfSchema {
                                            {"diffuseTransmissionColorFactor", numbers(3)},
                                            {"diffuseTransmissionColorTexture", texture}},
                                           {}};
+  const ObjectSchema specular_glossiness{{{"diffuseFactor", numbers(4)},
+                                          {"diffuseTexture", texture},
+                                          {"specularFactor", numbers(3)},
+                                          {"glossinessFactor", number()},
+                                          {"specularGlossinessTexture", texture}},
+                                         {}};
   const ObjectSchema empty{};
   const ObjectSchema material_extensions{
       {{"KHR_materials_anisotropy", object(anisotropy)},
@@ -101,6 +107,7 @@ struct GltfSchema {
        {"KHR_materials_emissive_strength", object(emissive_strength)},
        {"KHR_materials_ior", object(ior)},
        {"KHR_materials_iridescence", object(iridescence)},
+       {"KHR_materials_pbrSpecularGlossiness", object(specular_glossiness)},
        {"KHR_materials_sheen", object(sheen)},
        {"KHR_materials_specular", object(specular)},
        {"KHR_materials_transmission", object(transmission)},
@@ -143,7 +150,9 @@ struct GltfSchema {
                                     {}};
 
   const ObjectSchema meshopt_fallback{{{"fallback", boolean()}}, {}};
-  const ObjectSchema buffer_extensions{{{"EXT_meshopt_compression", object(meshopt_fallback)}}, {}};
+  const ObjectSchema buffer_extensions{{{"EXT_meshopt_compression", object(meshopt_fallback)},
+                                        {"KHR_meshopt_compression", object(meshopt_fallback)}},
+                                       {}};
   const ObjectSchema buffer{{{"uri", text()},
                              {"byteLength", size(1), required},
                              {"name", text()},
@@ -154,10 +163,11 @@ struct GltfSchema {
                               {"byteLength", integer(1, max_int), required},
                               {"byteStride", integer(1, 256), required},
                               {"count", integer(1, max_int), required},
-                              {"mode", text({"ATTRIBUTES", "TRIANGLES", "INDICES"}), required},
-                              {"filter", text({"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"})}},
+                              {"mode", text(), required},
+                              {"filter", text()}},
                              {}};
-  const ObjectSchema view_extensions{{{"EXT_meshopt_compression", object(meshopt)}}, {}};
+  const ObjectSchema view_extensions{
+      {{"EXT_meshopt_compression", object(meshopt)}, {"KHR_meshopt_compression", object(meshopt)}}, {}};
   const ObjectSchema buffer_view{{{"buffer", index_into("/buffers"), required},
                                   {"byteOffset", size()},
                                   {"byteLength", size(1), required},
@@ -182,8 +192,6 @@ struct GltfSchema {
        {"normalized", boolean()},
        {"count", size(1), required},
        {"type", text({"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"}), required},
-       {"min", array(number())},
-       {"max", array(number())},
        {"sparse", object(sparse)},
        {"name", text()}},
       {}};
@@ -225,10 +233,10 @@ struct GltfSchema {
                              {"name", text()}},
                             {}};
 
-  const ObjectSchema spot{{{"innerConeAngle", number(0, 1.5708)}, {"outerConeAngle", number(0, 1.5708)}}, {}};
+  const ObjectSchema spot{{{"innerConeAngle", number(0)}, {"outerConeAngle", number(0)}}, {}};
   const ObjectSchema light{{{"type", text({"point", "spot", "directional"}), required},
                             {"color", numbers(3)},
-                            {"intensity", number(0)},
+                            {"intensity", number()},
                             {"range", number(0)},
                             {"spot", object(spot)},
                             {"name", text()}},

@@ -110,6 +110,9 @@ class ImageLightReader {
       faces[i] = to_radiance(*decoded[i].pixels);
       bounded = bounded && decoded[i].pixels->channels != 4;
       if (!decoded[i].fingerprint.empty()) fingerprints.push_back(decoded[i].fingerprint);
+      for (const auto& remark : decoded[i].remarks)
+        notices.push_back(
+            {Notice::Severity::warning, fmt::format("/images/{}", images.Get(i).GetNumberAsInt()), remark});
     }
     auto environment = std::make_shared<EnvironmentDescription>();
     environment->picture =

@@ -17,13 +17,13 @@ namespace vernier {
 namespace {
 
 /// Keeps the materials that instances use, in the file's order, and renumbers the instances.
-void keep_used_materials(std::vector<MaterialDescription> all, SceneDescription& scene) {
+void keep_used_materials(std::vector<ImportedMaterial> all, SceneDescription& scene) {
   std::vector<uint32_t> renumbered(all.size(), 0);
   for (const auto& instance : scene.instances) renumbered[instance.material] = 1;
   for (size_t i = 0; i < all.size(); ++i) {
     if (!renumbered[i]) continue;
     renumbered[i] = uint32_t(scene.materials.size());
-    scene.materials.push_back(std::move(all[i]));
+    scene.materials.push_back(std::move(all[i].description));
   }
   for (auto& instance : scene.instances) instance.material = renumbered[instance.material];
 }
@@ -39,7 +39,8 @@ void leave_out_unreadable(MaterialDescription& material, const std::vector<bool>
 }
 
 /// Decodes the textures that the scene's materials use and renumbers their uses.
-void add_textures(const Document& document, SceneDescription& scene, std::vector<std::string>& fingerprints) {
+void add_textures(const Document& document, const std::vector<RoughnessFromGlossiness>& derived,
+                  SceneDescription& scene, std::vector<std::string>& fingerprints) {
   std::vector<int> wanted;
   for (const auto& material : scene.materials)
     for_each_texture(material, [&](const TextureUse& use) {
@@ -48,7 +49,7 @@ void add_textures(const Document& document, SceneDescription& scene, std::vector
   std::sort(wanted.begin(), wanted.end());
   wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
 
-  DecodedTextures decoded = read_textures(document, wanted, scene.notices);
+  DecodedTextures decoded = read_textures(document, wanted, derived, scene.notices);
   scene.textures = std::move(decoded.textures);
   fingerprints.insert(fingerprints.end(), decoded.fingerprints.begin(), decoded.fingerprints.end());
   for (auto& material : scene.materials) {
@@ -76,20 +77,21 @@ std::string combined_fingerprint(const std::vector<std::string>& parts) {
 }  // namespace
 
 SceneDescription import_scene(const std::string& path, const ImportOptions& options) {
-  const Document document(path);
+  const Document document(path, options.allow_outside_files);
   SceneDescription scene;
   scene.source = path;
-  scene.features = report_features(document);
-  scene.notices = feature_notices(scene.features);
+  scene.features = report_features(document.model());
+  scene.notices = document.notices();
+  for (auto& notice : feature_notices(scene.features)) scene.notices.push_back(std::move(notice));
 
   std::vector<NodePose> poses = rest_pose(document, scene.notices);
   if (options.time || !options.animation.empty())
-    apply_animation(document, options.animation, options.time.value_or(0), poses);
+    pose_by_animations(document, options.animation, options.time.value_or(0), poses, scene.notices);
   const NodePlaces places = place_nodes(document, poses);
   add_cameras_and_lights(document, places, scene);
 
-  std::vector<MaterialDescription> materials = read_materials(document, scene.notices);
-  InstancePlacer placer(document, materials, options.variant);
+  ImportedMaterials imported = read_materials(document, scene.notices);
+  InstancePlacer placer(document, imported.materials, options.variant);
   for (const int node : places.shown) placer.add_node(node, places, poses[size_t(node)]);
   Placement placement = placer.take();
   scene.instances = std::move(placement.instances);
@@ -103,8 +105,8 @@ SceneDescription import_scene(const std::string& path, const ImportOptions& opti
   for (auto& notice : repairs.notices()) scene.notices.push_back(std::move(notice));
 
   std::vector<std::string> fingerprints = document.fingerprints();
-  keep_used_materials(std::move(materials), scene);
-  add_textures(document, scene, fingerprints);
+  keep_used_materials(std::move(imported.materials), scene);
+  add_textures(document, imported.derived, scene, fingerprints);
   scene.environment = read_image_light(document, scene.notices, fingerprints);
   scene.hash = combined_fingerprint(fingerprints);
 

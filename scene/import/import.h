@@ -13,7 +13,10 @@ struct ImportOptions {
   /// Seconds at which an animation poses the scene. None: the scene is at rest, unless `animation` is named,
   /// which then poses it at 0.
   std::optional<double> time;
-  std::string animation;  ///< name or index; empty: the first
+  /// Name, index, or "all" of them at once; empty: all when no two set the same thing, else the first.
+  std::string animation;
+  /// Files that the scene refers to may lie outside its folder; such a reference is an error otherwise.
+  bool allow_outside_files = false;
 };
 
 /// Reads a .gltf or .glb file with all it refers to. Throws Error(input) with the file and JSON pointer, and

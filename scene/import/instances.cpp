@@ -4,7 +4,6 @@
 
 #include "core/base/names.h"
 #include "scene/import/accessors.h"
-#include "scene/import/materials.h"
 #include "scene/import/primitive_data.h"
 
 namespace vernier {
@@ -27,33 +26,27 @@ int find_variant(const Document& document, const std::string& wanted) {
   throw_unknown_name("variant", wanted, names);
 }
 
-/// Matrices of EXT_mesh_gpu_instancing, to the node's own space; none when the node has not got it.
-std::vector<M44d> instance_matrices(const Document& document, int index) {
-  const auto& extensions = document.model().nodes[size_t(index)].extensions;
-  const auto extension = extensions.find("EXT_mesh_gpu_instancing");
-  if (extension == extensions.end()) return {};
-  const auto& attributes = extension->second.Get("attributes");
+/// Matrices of EXT_mesh_gpu_instancing, to the node's own space: one a value of its attributes, of which
+/// those that are not known leave instances where the node is.
+std::vector<M44d> instance_matrices(const Document& document, int index, const tinygltf::Value& attributes) {
   std::vector<NodePose> poses;
-  const auto pose_at = [&](const std::string& name, size_t i, size_t count) -> NodePose& {
+  const auto names = attributes.Keys();
+  if (names.empty()) return {M44d()};
+  for (const auto& name : names) {
+    const int accessor = attributes.Get(name).GetNumberAsInt();
+    const size_t count = locate_elements(document, accessor).count;
     if (poses.empty()) poses.resize(count);
     if (poses.size() != count)
       document.fail(fmt::format("/nodes/{}/extensions/EXT_mesh_gpu_instancing/attributes/{}", index, name),
                     fmt::format("{} values for {} instances", count, poses.size()));
-    return poses[i];
-  };
-  for (const auto& name : attributes.Keys()) {
-    const int accessor = attributes.Get(name).GetNumberAsInt();
     if (name == "ROTATION") {
       const auto values = read_vectors<Vec4f>(document, accessor);
-      for (size_t i = 0; i < values.size(); ++i)
-        pose_at(name, i, values.size()).rotation =
-            Imath::Quatd(values[i].w, values[i].x, values[i].y, values[i].z).normalized();
+      for (size_t i = 0; i < count; ++i)
+        poses[i].rotation = Imath::Quatd(values[i].w, values[i].x, values[i].y, values[i].z).normalized();
     } else if (name == "TRANSLATION" || name == "SCALE") {
       const auto values = read_vectors<Vec3f>(document, accessor);
-      for (size_t i = 0; i < values.size(); ++i) {
-        NodePose& pose = pose_at(name, i, values.size());
-        (name == "SCALE" ? pose.scale : pose.translation) = Vec3d(values[i]);
-      }
+      for (size_t i = 0; i < count; ++i)
+        (name == "SCALE" ? poses[i].scale : poses[i].translation) = Vec3d(values[i]);
     }
   }
   std::vector<M44d> matrices;
@@ -72,7 +65,7 @@ std::optional<TextureUse> tangent_map(const MaterialDescription& m) {
 
 }  // namespace
 
-InstancePlacer::InstancePlacer(const Document& document, const std::vector<MaterialDescription>& materials,
+InstancePlacer::InstancePlacer(const Document& document, const std::vector<ImportedMaterial>& materials,
                                const std::string& variant)
     : document_(document), materials_(materials), variant_(find_variant(document, variant)) {}
 
@@ -92,23 +85,28 @@ void InstancePlacer::add_node(int index, const NodePlaces& places, const NodePos
     instance.name = node.name;
     instance.material = material_of(primitive);
     instance.mesh = mesh_of(std::move(use), instance.material);
+    instance.object = first_object_;
     // A skinned mesh is where its joints are; its own node does not count (glTF 2.0, 3.7.3.3).
     if (node.skin >= 0)
       result_.instances.push_back(std::move(instance));
     else
       add_instances(index, instance, places.to_world[size_t(index)]);
   }
+  if (!result_.instances.empty()) first_object_ = *result_.instances.back().object + 1;
 }
 
 void InstancePlacer::add_instances(int node, const InstanceDescription& prototype, const M44d& to_world) {
   const std::string place = fmt::format("/nodes/{}", node);
-  const bool instanced =
-      document_.model().nodes[size_t(node)].extensions.count("EXT_mesh_gpu_instancing") > 0;
+  const auto& extensions = document_.model().nodes[size_t(node)].extensions;
+  const auto instancing = extensions.find("EXT_mesh_gpu_instancing");
   const std::vector<M44d> matrices =
-      instanced ? instance_matrices(document_, node) : std::vector<M44d>{M44d()};
-  for (const auto& matrix : matrices) {
+      instancing == extensions.end()
+          ? std::vector<M44d>{M44d()}
+          : instance_matrices(document_, node, instancing->second.Get("attributes"));
+  for (uint32_t i = 0; i < matrices.size(); ++i) {
     result_.instances.push_back(prototype);
-    result_.instances.back().to_world = to_transform(document_, matrix * to_world, place);
+    result_.instances.back().to_world = to_transform(document_, matrices[i] * to_world, place);
+    result_.instances.back().object = first_object_ + i;
   }
 }
 
@@ -131,10 +129,15 @@ uint32_t InstancePlacer::mesh_of(MeshUse use, uint32_t material) {
   if (!is_new) return found->second;
   MeshRequest request;
   request.use = std::move(use);
-  request.tangent_map = tangent_map(materials_[material]);
-  if (request.tangent_map) request.texcoords[size_t(request.tangent_map->texcoord)] = true;
-  for_each_texture(materials_[material], [&](const TextureUse& texture) {
-    if (texture) request.texcoords[size_t(texture.texcoord)] = true;
+  const ImportedMaterial& reader = materials_[material];
+  request.tangent_map = tangent_map(reader.description);
+  const auto want = [&](const TextureUse& texture) {
+    const size_t slot = size_t(texture.texcoord);
+    request.texcoords[slot] = reader.texcoord_sets[slot];
+  };
+  if (request.tangent_map) want(*request.tangent_map);
+  for_each_texture(reader.description, [&](const TextureUse& texture) {
+    if (texture) want(texture);
   });
   result_.meshes.push_back(std::move(request));
   return found->second;

@@ -6,6 +6,7 @@
 
 #include "scene/description.h"
 #include "scene/import/document.h"
+#include "scene/import/materials.h"
 #include "scene/import/meshes.h"
 #include "scene/import/nodes.h"
 
@@ -24,7 +25,7 @@ class InstancePlacer {
  public:
   /// `materials`: all of the file, the default one last. `variant` names one of KHR_materials_variants, or is
   /// empty; throws Error(usage) when there is no such one.
-  InstancePlacer(const Document& document, const std::vector<MaterialDescription>& materials,
+  InstancePlacer(const Document& document, const std::vector<ImportedMaterial>& materials,
                  const std::string& variant);
 
   void add_node(int node, const NodePlaces& places, const NodePose& pose);
@@ -36,10 +37,11 @@ class InstancePlacer {
   uint32_t mesh_of(MeshUse use, uint32_t material);
 
   const Document& document_;
-  const std::vector<MaterialDescription>& materials_;
+  const std::vector<ImportedMaterial>& materials_;
   int variant_ = -1;
   std::map<MeshUse, uint32_t> meshes_;
   Placement result_;
+  uint32_t first_object_ = 0;  ///< number of the next object to be placed
 };
 
 }  // namespace vernier

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/import/texcoord_sets.h"
+
 namespace vernier {
 namespace {
 
@@ -32,6 +34,10 @@ class Members {
     const Value* value = find(name);
     return value ? Vec2f(component(*value, 0), component(*value, 1)) : otherwise;
   }
+  float component(const std::string& name, size_t i, float otherwise) const {
+    const Value* value = find(name);
+    return value ? component(*value, i) : otherwise;
+  }
   Rgb color(const std::string& name, const Rgb& otherwise) const {
     const Value* value = find(name);
     return value ? Rgb(component(*value, 0), component(*value, 1), component(*value, 2)) : otherwise;
@@ -45,23 +51,47 @@ class Members {
 
 class MaterialReader {
  public:
-  MaterialReader(const Document& document, size_t index, std::vector<Notice>& notices)
+  MaterialReader(const Document& document, size_t index, std::vector<RoughnessFromGlossiness>& derived,
+                 std::vector<Notice>& notices)
       : source_(document.model().materials[index]),
         place_(fmt::format("/materials/{}", index)),
+        texture_count_(int(document.model().textures.size())),
+        derived_(derived),
         notices_(notices) {}
 
-  MaterialDescription read() {
+  ImportedMaterial read() {
     result_.name = source_.name;
-    read_metallic_roughness();
+    read_surface();
+    if (const Members old = extension("KHR_materials_pbrSpecularGlossiness"); old.exist()) {
+      read_specular_glossiness(old);
+    } else {
+      read_metallic_roughness();
+      read_specular();
+    }
     read_emission();
-    read_specular();
     read_volume();
     read_coats();
     read_films();
-    return result_;
+    const TexcoordSets sets = assign_texcoord_sets(result_);
+    if (sets.wanted > 2)
+      warn(
+          fmt::format("its textures read {} sets of texture coordinates, of which two can be used; "
+                      "TEXCOORD_{} stands for the others",
+                      sets.wanted, sets.substitute));
+    return {std::move(result_), sets.of_slot};
   }
 
  private:
+  void read_surface() {
+    result_.normal_texture = use_of(source_.normalTexture);
+    result_.normal_scale = float(source_.normalTexture.scale);
+    result_.double_sided = source_.doubleSided;
+    result_.alpha_cutoff = float(source_.alphaCutoff);
+    if (source_.alphaMode == "MASK") result_.alpha_mode = AlphaMode::mask;
+    if (source_.alphaMode == "BLEND") result_.alpha_mode = AlphaMode::blend;
+    result_.unlit = source_.extensions.count("KHR_materials_unlit") > 0;
+  }
+
   void read_metallic_roughness() {
     const auto& pbr = source_.pbrMetallicRoughness;
     for (int i = 0; i < 4; ++i)
@@ -70,13 +100,28 @@ class MaterialReader {
     result_.roughness = unit(float(pbr.roughnessFactor), "roughnessFactor");
     result_.base_color_texture = use_of(pbr.baseColorTexture);
     result_.metallic_roughness_texture = use_of(pbr.metallicRoughnessTexture);
-    result_.normal_texture = use_of(source_.normalTexture);
-    result_.normal_scale = float(source_.normalTexture.scale);
-    result_.double_sided = source_.doubleSided;
-    result_.alpha_cutoff = float(source_.alphaCutoff);
-    if (source_.alphaMode == "MASK") result_.alpha_mode = AlphaMode::mask;
-    if (source_.alphaMode == "BLEND") result_.alpha_mode = AlphaMode::blend;
-    result_.unlit = source_.extensions.count("KHR_materials_unlit") > 0;
+  }
+
+  /// As a dielectric whose Fresnel reflectance is the specular colour: an index of 0 makes it 1, which the
+  /// colour then multiplies (KHR_materials_ior, "Interaction with other extensions").
+  void read_specular_glossiness(const Members& old) {
+    const Rgb diffuse = unit(old.color("diffuseFactor", Rgb(1, 1, 1)), "diffuseFactor");
+    const float alpha = unit(old.component("diffuseFactor", 3, 1), "diffuseFactor");
+    result_.base_color = Vec4f(diffuse.x, diffuse.y, diffuse.z, alpha);
+    result_.base_color_texture = texture(old, "diffuseTexture");
+    result_.metallic = 0;
+    result_.ior = 0;
+    result_.specular_color = unit(old.color("specularFactor", Rgb(1, 1, 1)), "specularFactor");
+    const float glossiness = unit(old.number("glossinessFactor", 1), "glossinessFactor");
+    result_.roughness = 1 - glossiness;
+    result_.specular_color_texture = texture(old, "specularGlossinessTexture");
+    if (!result_.specular_color_texture) return;
+    const RoughnessFromGlossiness wanted{result_.specular_color_texture.texture, glossiness};
+    const auto known = std::find(derived_.begin(), derived_.end(), wanted);
+    result_.roughness = 1;
+    result_.metallic_roughness_texture = result_.specular_color_texture;
+    result_.metallic_roughness_texture.texture = texture_count_ + int(known - derived_.begin());
+    if (known == derived_.end()) derived_.push_back(wanted);
   }
 
   void read_emission() {
@@ -107,7 +152,11 @@ class MaterialReader {
     result_.transmission_texture = texture(transmission, "transmissionTexture");
     const Members volume = extension("KHR_materials_volume");
     result_.thickness = volume.number("thicknessFactor", 0);
-    result_.attenuation_distance = volume.number("attenuationDistance", result_.attenuation_distance);
+    const float distance = volume.number("attenuationDistance", result_.attenuation_distance);
+    if (distance > 0)
+      result_.attenuation_distance = distance;
+    else
+      warn("an attenuationDistance of 0 or less is taken for none: the volume does not absorb");
     result_.attenuation_color =
         unit(volume.color("attenuationColor", result_.attenuation_color), "attenuationColor");
     result_.dispersion =
@@ -146,7 +195,11 @@ class MaterialReader {
     const Members film = extension("KHR_materials_iridescence");
     result_.iridescence = unit(film.number("iridescenceFactor", 0), "iridescenceFactor");
     result_.iridescence_texture = texture(film, "iridescenceTexture");
-    result_.iridescence_ior = std::max(film.number("iridescenceIor", result_.iridescence_ior), 1.f);
+    result_.iridescence_ior = film.number("iridescenceIor", result_.iridescence_ior);
+    if (result_.iridescence_ior < 1) {
+      clamped("iridescenceIor");
+      result_.iridescence_ior = 1;
+    }
     result_.iridescence_thickness_min =
         not_negative(film.number("iridescenceThicknessMinimum", 100), "iridescenceThicknessMinimum");
     result_.iridescence_thickness_max =
@@ -177,10 +230,6 @@ class MaterialReader {
     use.offset = transform.pair("offset", use.offset);
     use.scale = transform.pair("scale", use.scale);
     use.rotation = transform.number("rotation", 0);
-    if (use.texcoord > 1) {
-      warn(fmt::format("TEXCOORD_{} is not read, only 0 and 1 are; 0 is used instead", use.texcoord));
-      use.texcoord = 0;
-    }
     return use;
   }
 
@@ -207,19 +256,21 @@ class MaterialReader {
 
   const tinygltf::Material& source_;
   std::string place_;
+  int texture_count_;
+  std::vector<RoughnessFromGlossiness>& derived_;
   std::vector<Notice>& notices_;
   MaterialDescription result_;
 };
 
 }  // namespace
 
-std::vector<MaterialDescription> read_materials(const Document& document, std::vector<Notice>& notices) {
-  std::vector<MaterialDescription> materials;
+ImportedMaterials read_materials(const Document& document, std::vector<Notice>& notices) {
+  ImportedMaterials result;
   for (size_t i = 0; i < document.model().materials.size(); ++i)
-    materials.push_back(MaterialReader(document, i, notices).read());
-  materials.emplace_back();
-  materials.back().name = "default";
-  return materials;
+    result.materials.push_back(MaterialReader(document, i, result.derived, notices).read());
+  result.materials.emplace_back();
+  result.materials.back().description.name = "default";
+  return result;
 }
 
 }  // namespace vernier

@@ -1,16 +1,31 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "materials/material_description.h"
 #include "scene/description.h"
 #include "scene/import/document.h"
+#include "scene/import/specular_glossiness.h"
 
 namespace vernier {
 
+/// A material as the importer uses it on the way.
+struct ImportedMaterial {
+  MaterialDescription description;
+  /// The file's TEXCOORD_n that are sets 0 and 1 of the description.
+  std::array<int, 2> texcoord_sets{0, 1};
+};
+
+struct ImportedMaterials {
+  std::vector<ImportedMaterial> materials;
+  std::vector<RoughnessFromGlossiness> derived;  ///< textures that the file has in another form
+};
+
 /// All materials of the file, and after them glTF's default material. TextureUse::texture is the file's own
-/// texture index. Values outside their range are clamped, which is noticed.
-std::vector<MaterialDescription> read_materials(const Document& document, std::vector<Notice>& notices);
+/// texture index or, beyond those, one of `derived`. Values outside their range are clamped, which is
+/// noticed.
+ImportedMaterials read_materials(const Document& document, std::vector<Notice>& notices);
 
 /// Calls visit(TextureUse&) for each texture slot of a material (const or not).
 template <typename Material, typename Visit>

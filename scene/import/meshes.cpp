@@ -77,8 +77,8 @@ void repair_tangents(MeshDescription& mesh, MeshRepairs& repairs) {
 void read_texcoords(const PrimitiveData& data, const MeshRequest& request, MeshDescription& mesh,
                     MeshRepairs& repairs) {
   for (size_t set = 0; set < mesh.texcoords.size(); ++set) {
-    if (!request.texcoords[set]) continue;
-    const std::string attribute = fmt::format("TEXCOORD_{}", set);
+    if (request.texcoords[set] < 0) continue;
+    const std::string attribute = fmt::format("TEXCOORD_{}", request.texcoords[set]);
     auto& texcoords = mesh.texcoords[set];
     if (!data.has(attribute)) {
       texcoords.assign(mesh.positions.size(), Vec2f(0, 0));
@@ -94,14 +94,8 @@ void read_texcoords(const PrimitiveData& data, const MeshRequest& request, MeshD
   }
 }
 
-/// Vertex colours; none when all are white.
-std::vector<Vec4f> read_colors(const PrimitiveData& data) {
-  std::vector<Vec4f> colors;
-  if (data.components("COLOR_0") == 3) {
-    for (const auto& c : data.read<Vec3f>("COLOR_0")) colors.emplace_back(c.x, c.y, c.z, 1.f);
-  } else {
-    colors = data.read<Vec4f>("COLOR_0");
-  }
+/// Vertex colours that are finite and not negative; none when all are white.
+void tidy_colors(std::vector<Vec4f>& colors) {
   bool white = true;
   for (auto& color : colors) {
     for (int c = 0; c < 4; ++c)
@@ -109,7 +103,6 @@ std::vector<Vec4f> read_colors(const PrimitiveData& data) {
     white = white && color == Vec4f(1, 1, 1, 1);
   }
   if (white) colors.clear();
-  return colors;
 }
 
 MeshDescription read_mesh(const Document& document, const MeshRequest& request,
@@ -131,8 +124,9 @@ MeshDescription read_mesh(const Document& document, const MeshRequest& request,
     }
   }
   read_texcoords(data, request, mesh, repairs);
-  if (data.has("COLOR_0")) mesh.colors = read_colors(data);
-  if (!use.weights.empty()) morph(data, use.weights, mesh);
+  if (data.has("COLOR_0")) mesh.colors = data.read_colors();
+  if (!use.weights.empty()) morph(data, use.weights, request.texcoords, mesh);
+  tidy_colors(mesh.colors);
   if (use.skin >= 0) skin(data, joint_matrices(document, use.skin, node_to_world), mesh);
   if (!use.weights.empty() || use.skin >= 0) check_positions(data, mesh.positions);
   drop_unused_vertices(mesh);

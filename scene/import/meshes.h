@@ -24,7 +24,7 @@ struct MeshUse {
 
 struct MeshRequest {
   MeshUse use;
-  std::array<bool, 2> texcoords{};        ///< TEXCOORD_n that the material reads
+  std::array<int, 2> texcoords{-1, -1};   ///< n of the TEXCOORD_n to read as sets 0 and 1; -1: none
   std::optional<TextureUse> tangent_map;  ///< the texture whose axes tangents follow; none: they are not read
 };
 

@@ -4,7 +4,8 @@
 
 namespace vernier {
 
-/// A buffer view's EXT_meshopt_compression, by the names of its specification.
+/// A buffer view's EXT_meshopt_compression or KHR_meshopt_compression, by the names of their specifications.
+/// The bit streams are one family, so what can be decoded depends on the library alone.
 struct MeshoptView {
   std::span<const uint8_t> compressed;
   size_t count = 0, stride = 0;

@@ -20,6 +20,9 @@ struct NodePlaces {
 /// node with two parents, and on a scene that lists a child.
 NodePlaces place_nodes(const Document& document, const std::vector<NodePose>& poses);
 
+/// Throws Error(input) about `place` when the matrix is not affine.
+void check_affine(const Document& document, const Imath::M44d& matrix, const std::string& place);
+
 /// Throws Error(input) about `place` when the matrix does not fit in floats or is not affine.
 Transform to_transform(const Document& document, const Imath::M44d& matrix, const std::string& place);
 

@@ -27,10 +27,10 @@ struct NodePose {
 /// noticed.
 std::vector<NodePose> rest_pose(const Document& document, std::vector<Notice>& notices);
 
-/// Sets what the animation animates to its values at `time` seconds; before its first key and after its last
-/// those hold. `animation` is a name or an index, empty for the first. Throws Error(usage) when there is no
-/// such one.
-void apply_animation(const Document& document, const std::string& animation, double time,
-                     std::vector<NodePose>& poses);
+/// Sets what animations animate to its values at `time` seconds; before its first key and after its last
+/// those hold, which is noticed. `wanted` is ImportOptions::animation; where several animations set one
+/// property the last in the file's order does. Throws Error(usage) when there is no such animation.
+void pose_by_animations(const Document& document, const std::string& wanted, double time,
+                        std::vector<NodePose>& poses, std::vector<Notice>& notices);
 
 }  // namespace vernier

@@ -18,6 +18,13 @@ size_t index_count(const Document& document, const tinygltf::Primitive& primitiv
   return document.model().accessors[size_t(accessor)].count;
 }
 
+std::vector<Vec4f> with_alpha(const std::vector<Vec3f>& colors, float alpha) {
+  std::vector<Vec4f> result;
+  result.reserve(colors.size());
+  for (const auto& c : colors) result.emplace_back(c.x, c.y, c.z, alpha);
+  return result;
+}
+
 /// The i-th triangle of a strip or fan, wound as glTF 2.0, 3.7.2.1 has it.
 Triangle connected_triangle(int mode, const std::vector<uint32_t>& indices, size_t i) {
   if (mode == TINYGLTF_MODE_TRIANGLE_FAN) return {indices[i + 1], indices[i + 2], indices[0]};
@@ -47,8 +54,8 @@ int PrimitiveData::accessor_of(const std::string& attribute) const {
   return primitive_.attributes.at(attribute);
 }
 
-int PrimitiveData::components(const std::string& attribute) const {
-  return component_count(document_.model().accessors[size_t(accessor_of(attribute))]);
+int PrimitiveData::components(int accessor) const {
+  return component_count(document_.model().accessors[size_t(accessor)]);
 }
 
 size_t PrimitiveData::vertex_count() const {
@@ -80,6 +87,18 @@ void PrimitiveData::read_into(const std::string& attribute, int components, floa
   elements.normalized = accessor.normalized;
   elements.stride = component_size(accessor.componentType) * size_t(components);
   convert_to_floats(elements, out);
+}
+
+std::vector<Vec4f> PrimitiveData::read_colors() const {
+  if (components(accessor_of("COLOR_0")) != 3) return read<Vec4f>("COLOR_0");
+  return with_alpha(read<Vec3f>("COLOR_0"), 1);
+}
+
+std::vector<Vec4f> PrimitiveData::read_target_colors(size_t target) const {
+  const auto found = primitive_.targets[target].find("COLOR_0");
+  if (found == primitive_.targets[target].end() || components(found->second) != 3)
+    return read_target<Vec4f>(target, "COLOR_0");
+  return with_alpha(read_target<Vec3f>(target, "COLOR_0"), 0);
 }
 
 std::vector<Triangle> PrimitiveData::read_triangles() const {

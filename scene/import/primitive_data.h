@@ -16,8 +16,6 @@ class PrimitiveData {
   PrimitiveData(const Document& document, int mesh, int primitive);
 
   bool has(const std::string& attribute) const;
-  /// Components per element of an attribute that is there.
-  int components(const std::string& attribute) const;
   size_t vertex_count() const;
 
   /// All values of an attribute of `V`'s number of float components; throws Error(input) when it is of
@@ -31,6 +29,9 @@ class PrimitiveData {
     return values;
   }
 
+  /// COLOR_0, which is there; of three components: with alpha 1.
+  std::vector<Vec4f> read_colors() const;
+
   size_t target_count() const { return primitive_.targets.size(); }
   /// A morph target's values for an attribute; empty when it has none. Throws Error(input) as read() does.
   template <typename V>
@@ -40,6 +41,9 @@ class PrimitiveData {
     check_target(target, attribute, found->second);
     return read_vectors<V>(document_, found->second);
   }
+
+  /// A morph target's changes of COLOR_0, of three components: with none of alpha; empty when it has none.
+  std::vector<Vec4f> read_target_colors(size_t target) const;
 
   /// Triangles of lists, strips and fans, counter-clockwise as the file winds them; every index is in range.
   std::vector<Triangle> read_triangles() const;
@@ -52,6 +56,7 @@ class PrimitiveData {
   // copies.
   static constexpr size_t padding = 2;
 
+  int components(int accessor) const;
   int accessor_of(const std::string& attribute) const;
   /// Indices that the primitive draws, whatever its mode.
   std::vector<uint32_t> drawn_indices() const;

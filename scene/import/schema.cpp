@@ -34,6 +34,35 @@ struct Place {
   }
 };
 
+std::string range_text(const ValueRule& rule) {
+  const bool below = std::isfinite(rule.lower), above = std::isfinite(rule.upper);
+  if (below && above) return fmt::format(" from {} to {}", rule.lower, rule.upper);
+  if (below) return fmt::format(" of at least {}", rule.lower);
+  return above ? fmt::format(" of at most {}", rule.upper) : "";
+}
+
+/// A number beyond single precision becomes its largest.
+void clamp_to_float(json& number) {
+  constexpr double largest = std::numeric_limits<float>::max();
+  if (std::abs(number.get<double>()) > largest) number = std::copysign(largest, number.get<double>());
+}
+
+bool is_in_range(const json& number, const ValueRule& rule) {
+  return number.get<double>() >= rule.lower && number.get<double>() <= rule.upper;
+}
+
+/// Why a value stands for none where it may be left out; empty: it does not. Anything else that is wrong with
+/// it is an error.
+std::string reason_to_drop(const json& value, const ValueRule& rule) {
+  if (value.is_null()) return "null is no value";
+  if (rule.kind == Kind::array && rule.items[0].kind == Kind::number && value.is_array())
+    for (const json& item : value)
+      if (item.is_null()) return "null is no number";
+  if (rule.kind == Kind::number && value.is_number() && !is_in_range(value, rule))
+    return fmt::format("{} is not a number{}", describe(value), range_text(rule));
+  return {};
+}
+
 class Checker {
  public:
   Checker(const json& root, const std::string& file) : root_(root), file_(file) {}
@@ -42,17 +71,53 @@ class Checker {
     if (!value.is_object()) fail(place, "expected an object", value);
     for (const auto& property : schema.properties) {
       const auto found = value.find(property.name);
-      if (found != value.end())
+      if (found == value.end()) {
+        if (property.required)
+          throw Error(ErrorKind::input, file_, place.parent ? place.pointer() : "/",
+                      fmt::format("'{}' is missing", property.name));
+      } else if (property.required || is_kept(value, found, property.value, place)) {
         check(*found, property.value, {&place, property.name});
-      else if (property.required)
-        throw Error(ErrorKind::input, file_, place.parent ? place.pointer() : "/",
-                    fmt::format("'{}' is missing", property.name));
+      }
     }
     if (schema.others.empty()) return;
-    for (auto& [name, member] : value.items()) check(member, schema.others[0], {&place, name});
+    for (auto member = value.begin(); member != value.end();) {
+      const auto current = member++;
+      if (is_kept(value, current, schema.others[0], place))
+        check(*current, schema.others[0], {&place, current.key()});
+    }
+  }
+
+  /// One warning for each property that counts as absent somewhere.
+  std::vector<Notice> notices() const {
+    std::vector<Notice> list;
+    for (const auto& [name, first] : dropped_) {
+      std::string text = first.reason + ", so the property counts as absent";
+      if (first.count > 1)
+        text += fmt::format("; {} more places have a '{}' like that", first.count - 1, name);
+      list.push_back({Notice::Severity::warning, first.place, text});
+    }
+    return list;
   }
 
  private:
+  struct Dropped {
+    std::string place, reason;
+    size_t count = 0;
+  };
+
+  /// Erases an optional member that stands for no value, which is counted.
+  bool is_kept(json& object, json::iterator member, const ValueRule& rule, const Place& place) {
+    const std::string reason = reason_to_drop(*member, rule);
+    if (reason.empty()) return true;
+    Dropped& dropped = dropped_[member.key()];
+    if (dropped.count++ == 0) {
+      dropped.place = Place{&place, member.key()}.pointer();
+      dropped.reason = reason;
+    }
+    object.erase(member);
+    return false;
+  }
+
   void check(json& value, const ValueRule& rule, const Place& place) {
     switch (rule.kind) {
       case Kind::boolean:
@@ -65,8 +130,9 @@ class Checker {
         check_index(value, rule, place);
         break;
       case Kind::number:
-        if (!value.is_number() || !(value.get<double>() >= rule.lower && value.get<double>() <= rule.upper))
+        if (!value.is_number() || !is_in_range(value, rule))
           fail(place, "expected a number" + range_text(rule), value);
+        clamp_to_float(value);
         break;
       case Kind::text:
         check_text(value, rule, place);
@@ -88,8 +154,7 @@ class Checker {
     // The parser stores what is not negative as unsigned, which is what readers of sizes look for.
     if (value.is_number_integer() && !value.is_number_unsigned() && value.get<int64_t>() >= 0)
       value = uint64_t(value.get<int64_t>());
-    if (!value.is_number_integer() ||
-        !(value.get<double>() >= rule.lower && value.get<double>() <= rule.upper))
+    if (!value.is_number_integer() || !is_in_range(value, rule))
       fail(place, "expected an integer" + range_text(rule), value);
     if (rule.values.empty()) return;
     for (const int allowed : rule.values)
@@ -129,15 +194,6 @@ class Checker {
     for (size_t i = 0; i < value.size(); ++i) check(value[i], rule.items[0], {&place, {}, i});
   }
 
-  static std::string range_text(const ValueRule& rule) {
-    // Numbers that merely have to fit single precision go without saying.
-    constexpr double largest = std::numeric_limits<float>::max();
-    const bool below = rule.lower > -largest, above = rule.upper < largest;
-    if (below && above) return fmt::format(" from {} to {}", rule.lower, rule.upper);
-    if (below) return fmt::format(" of at least {}", rule.lower);
-    return above ? fmt::format(" of at most {}", rule.upper) : "";
-  }
-
   [[noreturn]] void fail(const Place& place, const std::string& expected, const json& found) const {
     throw Error(ErrorKind::input, file_, place.parent ? place.pointer() : "/",
                 expected + ", found " + describe(found));
@@ -146,12 +202,16 @@ class Checker {
   const json& root_;
   const std::string& file_;
   std::map<std::string, size_t> sizes_;
+  std::map<std::string, Dropped> dropped_;  ///< by name of the property
 };
 
 }  // namespace
 
-void check_against_schema(json& document, const ObjectSchema& schema, const std::string& file) {
-  Checker(document, file).check_object(document, schema, {});
+void check_against_schema(json& document, const ObjectSchema& schema, const std::string& file,
+                          std::vector<Notice>& notices) {
+  Checker checker(document, file);
+  checker.check_object(document, schema, {});
+  for (auto& notice : checker.notices()) notices.push_back(std::move(notice));
 }
 
 }  // namespace vernier

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/error.h"
+
 namespace vernier {
 
 struct ObjectSchema;
@@ -37,8 +39,13 @@ struct ObjectSchema {
 };
 
 /// Throws Error(input) with the JSON pointer of the first value that is missing or is not what `schema` says.
-/// Whole numbers written as 3.0 where an integer is expected become integers.
-void check_against_schema(nlohmann::json& document, const ObjectSchema& schema, const std::string& file);
+/// Three things are put right instead:
+/// - whole numbers written as 3.0 where an integer is expected become integers;
+/// - numbers beyond single precision become its largest ones;
+/// - an optional property that is null, which is how JavaScript writes numbers that are not finite, or a
+///   number outside its range, counts as absent, with a warning in `notices`.
+void check_against_schema(nlohmann::json& document, const ObjectSchema& schema, const std::string& file,
+                          std::vector<Notice>& notices);
 
 /// glTF 2.0 and the extensions that the importer reads (gltf_schema.cpp). After the check every type is right
 /// and every index is in range.

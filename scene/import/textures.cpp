@@ -4,9 +4,11 @@
 
 #include <cstring>
 #include <map>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/image/image_io.h"
+#include "scene/import/data_uri.h"
 #include "scene/import/ordered_parallel.h"
 
 namespace vernier {
@@ -72,6 +74,19 @@ Texture make_texture(const Document& document, const tinygltf::Texture& source,
           nearest ? FilterMode::nearest : FilterMode::linear};
 }
 
+/// The first of the candidates that has pixels; without one, why the last has none.
+DecodedImage first_decoded(const std::map<int, DecodedImage>& images, const std::vector<int>& candidates) {
+  DecodedImage result;
+  result.problem = "it has no image";
+  for (const int candidate : candidates) {
+    const auto image = images.find(candidate);
+    if (image == images.end()) break;
+    result = image->second;
+    if (result.pixels) break;
+  }
+  return result;
+}
+
 std::shared_ptr<const Image8> magenta_texel() {
   auto image = std::make_shared<Image8>(1, 1, 3);
   image->values = {255, 0, 255};
@@ -89,16 +104,24 @@ DecodedImage decode_image(const Document& document, int index) {
   if (source.view >= 0) {
     bytes = document.view(source.view);
   } else {
-    file = document.files().read_uri(source.uri, place + "/uri");
+    AssetContent content = document.files().read_uri(source.uri, place + "/uri");
+    if (!content.problem.empty()) {
+      image.problem = content.problem;
+      return image;
+    }
+    if (!content.remark.empty()) image.remarks.push_back(content.remark);
+    file = std::move(content.bytes);
     bytes = file.span();
-    if (!source.uri.starts_with("data:")) image.fingerprint = fingerprint(bytes);
+    if (!is_data_uri(source.uri)) image.fingerprint = fingerprint(bytes);
   }
   if (is_ktx2(bytes)) {
-    image.problem = "KTX2 (Basis Universal) images cannot be decoded";
+    image.problem = "KTX2 (Basis Universal) images cannot be decoded; convert it to PNG, JPEG or WebP";
     return image;
   }
   try {
-    image.pixels = std::make_shared<Image8>(decode_image8(bytes, document.files().scene_path() + place));
+    PartialImage8 decoded = decode_partial_image8(bytes, document.files().scene_path() + place);
+    image.pixels = std::make_shared<Image8>(std::move(decoded.image));
+    if (!decoded.damage.empty()) image.remarks.push_back(decoded.damage);
   } catch (const Error& e) {
     if (e.kind() == ErrorKind::memory) throw;
     image.problem = e.what();
@@ -107,35 +130,40 @@ DecodedImage decode_image(const Document& document, int index) {
 }
 
 DecodedTextures read_textures(const Document& document, const std::vector<int>& wanted,
+                              const std::vector<RoughnessFromGlossiness>& derived,
                               std::vector<Notice>& notices) {
-  const std::map<int, DecodedImage> images = decode_images(document, wanted);
+  const auto& textures = document.model().textures;
+  const int from_file = int(textures.size());
+  const auto source_of = [&](int index) {
+    return index < from_file ? index : derived[size_t(index - from_file)].texture;
+  };
+  std::vector<int> sources;
+  for (const int index : wanted) sources.push_back(source_of(index));
+  const std::map<int, DecodedImage> images = decode_images(document, sources);
+
   DecodedTextures result;
+  std::set<int> unreadable;
   for (const int index : wanted) {
-    const auto& source = document.model().textures[size_t(index)];
-    const std::string place = fmt::format("/textures/{}", index);
-    std::shared_ptr<const Image8> pixels;
-    std::string problem = "it has no image";
-    const auto candidates = candidate_images(source);
-    for (const int image : candidates) {
-      const auto decoded = images.find(image);
-      if (decoded == images.end()) break;
-      pixels = decoded->second.pixels;
-      if (pixels) break;
-      problem = decoded->second.problem;
-    }
+    const int source = source_of(index);
+    const DecodedImage chosen = first_decoded(images, candidate_images(textures[size_t(source)]));
+    std::shared_ptr<const Image8> pixels = chosen.pixels;
     result.unreadable.push_back(!pixels);
-    if (!pixels) {
-      notices.push_back(
-          {Notice::Severity::warning, place,
-           fmt::format("texture '{}' cannot be read: {}; convert it to PNG, JPEG or WebP. Where it "
-                       "colours a surface that is magenta, elsewhere it is left out",
-                       source.name, problem)});
+    if (!pixels && unreadable.insert(source).second)
+      notices.push_back({Notice::Severity::warning, fmt::format("/textures/{}", source),
+                         fmt::format("texture '{}' cannot be read: {}. Where it colours a surface that is "
+                                     "magenta, elsewhere it is left out",
+                                     textures[size_t(source)].name, chosen.problem)});
+    if (!pixels)
       pixels = magenta_texel();
-    }
-    result.textures.push_back(make_texture(document, source, std::move(pixels)));
+    else if (index >= from_file)
+      pixels = roughness_of(*pixels, derived[size_t(index - from_file)].factor);
+    result.textures.push_back(make_texture(document, textures[size_t(source)], std::move(pixels)));
   }
-  for (const auto& [index, image] : images)
+  for (const auto& [index, image] : images) {
     if (!image.fingerprint.empty()) result.fingerprints.push_back(image.fingerprint);
+    for (const auto& remark : image.remarks)
+      notices.push_back({Notice::Severity::warning, fmt::format("/images/{}", index), remark});
+  }
   return result;
 }
 

@@ -54,7 +54,9 @@ Vec2f EnvironmentLight::to_uv(const Vec3f& w) const {
   const float x = cos_rotation_ * w.x - sin_rotation_ * w.z;
   const float z = sin_rotation_ * w.x + cos_rotation_ * w.z;
   const float u = std::atan2(z, x) * (inv_pi / 2) + 0.5f;
-  return {std::min(u, 0x1.fffffep-1f), std::acos(std::clamp(w.y, -1.f, 1.f)) * inv_pi};
+  const float v = std::acos(std::clamp(w.y, -1.f, 1.f)) * inv_pi;
+  // A direction that is none gets a place all the same, since texels are read at it.
+  return {u >= 0 ? std::min(u, 0x1.fffffep-1f) : 0, v >= 0 ? v : 0};
 }
 
 Vec3f EnvironmentLight::to_direction(const Vec2f& uv) const {

@@ -31,9 +31,11 @@ std::optional<LightSample> PunctualLight::sample(const SurfacePoint& from, const
   float attenuation = 1 / distance2;
   if (std::isfinite(range_)) attenuation *= std::clamp(1 - square(distance2 / square(range_)), 0.f, 1.f);
   if (kind_ == Kind::spot) {
-    const float cosine = -dot(sample.wi, direction_);
-    attenuation *=
-        square(std::clamp((cosine - cos_outer_) / std::max(1e-3f, cos_inner_ - cos_outer_), 0.f, 1.f));
+    // Angular attenuation (KHR_lights_punctual, "Inner and Outer Cone Angles") without its sample code's
+    // lower limit of the width, which would dim narrow cones and blur sharp edges.
+    const float inside = -dot(sample.wi, direction_) - cos_outer_, width = cos_inner_ - cos_outer_;
+    if (inside < 0) return std::nullopt;
+    if (inside < width) attenuation *= square(inside / width);
   }
   if (!(attenuation > 0)) return std::nullopt;
   sample.radiance = intensity_ * attenuation;

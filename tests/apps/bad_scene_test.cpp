@@ -98,5 +98,50 @@ TEST(BadScene, UsedButUnknownExtensionIsAWarningAndStrictRefusesIt) {
   EXPECT_THAT(strict.err, testing::AllOf(StartsWith("error: "), HasSubstr("KHR_tomorrow")));
 }
 
+const std::string two_cameras = std::string(minimal) + R"(,
+    "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 1}}],
+    "nodes": [{"camera": 0, "scale": [0, 0, 0], "name": "flat"}, {"camera": 0, "name": "good"}]})";
+
+TEST(BadScene, ACameraThatLooksNowhereIsNamedWhenItIsTheOneUsed) {
+  const test::TemporaryFolder folder;
+  const std::string scene = folder.write("flat.gltf", two_cameras);
+  const auto render = [&](const std::string& camera) {
+    return test::run_vernier(
+        {"render", scene, "-o", folder.file("out.exr"), "--size", "4x4", "--spp", "1", "--camera", camera});
+  };
+  const test::ProcessResult flat = render("flat");
+  EXPECT_EQ(flat.exit_code, 3);
+  EXPECT_EQ(flat.err_lines().size(), 1u) << flat.err;
+  EXPECT_THAT(flat.err,
+              StartsWith("error: " + scene + ": /nodes/0: the camera 'flat' of the node 'flat' cannot be"));
+  const test::ProcessResult good = render("good");
+  EXPECT_EQ(good.exit_code, 0) << good.err;
+  EXPECT_THAT(good.err, HasSubstr("/nodes/0: the camera 'flat'"));
+}
+
+TEST(BadScene, FilesOutsideTheFolderAreReadWhenAllowed) {
+  const test::TemporaryFolder folder;
+  const std::string scene = folder.write("scene/outside.gltf", std::string(minimal) + R"(,
+      "buffers": [{"byteLength": 4, "uri": "../data.bin"}]})");
+  folder.write("data.bin", "1234");
+  expect_refused(folder, scene, "--allow-outside-files");
+  EXPECT_EQ(test::run_vernier({"info", scene, "--allow-outside-files"}).exit_code, 0);
+}
+
+TEST(BadScene, NothingOfAFileReachesTheTerminalAsItIs) {
+  const test::TemporaryFolder folder;
+  const std::string scene = folder.write("names.gltf", std::string(minimal) + R"(,
+      "materials": [{"name": "a\u001b[2Jb\u009b1m"}], "cameras": [{"name": "c\nd", "type": "perspective",
+      "perspective": {"yfov": 1, "znear": 1}}], "nodes": [{"camera": 0}]})");
+  const test::ProcessResult info = test::run_vernier({"info", scene});
+  EXPECT_EQ(info.exit_code, 0);
+  for (const std::string& text : {info.out, info.err}) {
+    EXPECT_EQ(text.find('\x1b'), std::string::npos);
+    EXPECT_EQ(text.find("\xC2\x9B"), std::string::npos);
+  }
+  const std::string utf16 = folder.write("utf16.gltf", "\xFF\xFE{\0");
+  expect_refused(folder, utf16, "UTF-16");
+}
+
 }  // namespace
 }  // namespace vernier

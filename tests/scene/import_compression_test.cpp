@@ -155,6 +155,37 @@ TEST(ImportCompression, RejectsDamagedMeshopt) {
   EXPECT_THAT(with("mode", "TRIANGLES"), HasSubstr("byteStride of indices"));
 }
 
+/// The grid with every EXT_meshopt_compression called KHR_meshopt_compression.
+GltfFile khr_meshopt_grid(const Grid& grid) {
+  GltfFile file = meshopt_grid(grid);
+  std::string text = file.json.dump();
+  const std::string old = "EXT_meshopt_compression";
+  for (size_t at = text.find(old); at != std::string::npos; at = text.find(old))
+    text.replace(at, old.size(), "KHR_meshopt_compression");
+  file.json = json::parse(text);
+  return file;
+}
+
+TEST(ImportCompression, DecodesMeshoptByItsNewName) {
+  const Grid grid(9);
+  const MeshDescription mesh = khr_meshopt_grid(grid).import().meshes.at(0);
+  EXPECT_EQ(sorted_triangles(mesh.positions, mesh.triangles), sorted_triangles(grid));
+}
+
+TEST(ImportCompression, NamesWhatTheMeshoptLibraryLacks) {
+  const auto with = [](const char* property, const json& value) {
+    GltfFile file = khr_meshopt_grid(Grid(4));
+    file.json["bufferViews"][0]["extensions"]["KHR_meshopt_compression"][property] = value;
+    return import_error(file);
+  };
+  const std::string place = "/bufferViews/0/extensions/KHR_meshopt_compression: ";
+  EXPECT_THAT(with("filter", "COLOR"), HasSubstr(place + "filter COLOR is not supported"));
+  EXPECT_THAT(with("mode", "CLUSTERS"), HasSubstr(place + "mode CLUSTERS is not supported"));
+  GltfFile file = khr_meshopt_grid(Grid(4));
+  file.buffer[0] = '\xa7';  // no library knows that version yet
+  EXPECT_THAT(import_error(file), HasSubstr(place + "the data is of vertex codec 7"));
+}
+
 /// The grid through Draco's encoder, with positions of 16 bits.
 GltfFile draco_grid(const Grid& grid) {
   draco::TriangleSoupMeshBuilder builder;

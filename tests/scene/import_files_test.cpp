@@ -104,7 +104,7 @@ TEST(ImportFiles, NamesWhatIsMissing) {
   EXPECT_THAT(import_error(folder.file("no/folder/none.glb")),
               HasSubstr("none.glb: cannot be read: No such file"));
   const std::string error = import_error(triangle_with_uri("gone.bin").save(folder));
-  EXPECT_THAT(error, HasSubstr("/buffers/0/uri: 'gone.bin' cannot be read"));
+  EXPECT_THAT(error, HasSubstr("/buffers/0/uri: 'gone.bin' is missing: No such file"));
   folder.write("empty.gltf", "");
   EXPECT_THAT(import_error(folder.file("empty.gltf")), HasSubstr("empty"));
 }

@@ -16,7 +16,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Indexed, textured, skinned, morphed, animated, instanced; sparse data, cameras and lights.
+/// Indexed, textured, skinned, morphed, animated, instanced; sparse data, a volume, an archived material, a
+/// data URI, cameras and lights.
 GltfFile everything() {
   GltfFile file;
   const int positions = file.add_accessor(GltfFile::triangle_positions(), "VEC3");
@@ -24,6 +25,7 @@ GltfFile everything() {
   const int coordinates = file.add_accessor(std::vector<float>{0, 0, 1, 0, 0, 1}, "VEC2");
   const int colors =
       file.add_accessor(std::vector<uint8_t>{255, 0, 0, 255, 0, 9, 0, 255, 5, 5, 5, 99}, "VEC4", true);
+  const int color_changes = file.add_accessor(std::vector<float>(9, 0.5f), "VEC3");
   const int joints = file.add_accessor(std::vector<uint8_t>{0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, "VEC4");
   const int weights = file.add_accessor(std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, .5f, .5f, 0, 0}, "VEC4");
   const int indices = file.add_accessor(std::vector<uint16_t>{0, 1, 2, 2, 1, 0}, "SCALAR");
@@ -54,9 +56,10 @@ GltfFile everything() {
               {"KHR_materials_sheen", {{"sheenColorFactor", {1, 1, 1}}}}}}});
   const json attributes = {{"POSITION", positions}, {"NORMAL", normals},  {"TEXCOORD_0", coordinates},
                            {"COLOR_0", colors},     {"JOINTS_0", joints}, {"WEIGHTS_0", weights}};
-  file.add_mesh(
-      attributes,
-      {{"indices", indices}, {"material", 0}, {"targets", {{{"POSITION", lift}}, {{"NORMAL", normals}}}}});
+  file.add_mesh(attributes,
+                {{"indices", indices},
+                 {"material", 0},
+                 {"targets", {{{"POSITION", lift}, {"COLOR_0", color_changes}}, {{"NORMAL", normals}}}}});
   file.json["meshes"][0]["weights"] = {0.5, 0.25};
   const int matrices = file.add_accessor(std::vector<float>(32, 0.25f), "MAT4");
   file.add("skins", {{"joints", {1, 2}}, {"inverseBindMatrices", matrices}});
@@ -75,6 +78,19 @@ GltfFile everything() {
   file.add("animations",
            {{"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}}},
             {"samplers", {{{"input", times}, {"output", places}}}}});
+  file.add("animations", {{"channels", {{{"sampler", 0}, {"target", {{"node", 2}, {"path", "scale"}}}}}},
+                          {"samplers", {{{"input", times}, {"output", places}}}}});
+  file.add("images", {{"uri", "data:image/png;BASE64,iVBORw0KGgo%3D"}});
+  file.add("textures", {{"source", 1}});
+  const json old = {{"specularGlossinessTexture", {{"index", 0}, {"texCoord", 2}}},
+                    {"diffuseTexture", {{"index", 1}}},
+                    {"glossinessFactor", 0.5},
+                    {"specularFactor", {0.1, 0.2, 0.3}}};
+  file.add("materials", {{"extensions", {{"KHR_materials_pbrSpecularGlossiness", old}}}});
+  file.add_mesh({{"POSITION", positions}, {"TEXCOORD_0", coordinates}, {"TEXCOORD_2", coordinates}},
+                {{"material", 1}});
+  file.add_root(
+      {{"mesh", 1}, {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"_ID", times}}}}}}}});
   file.json["extensionsUsed"] = {"KHR_lights_punctual", "EXT_mesh_gpu_instancing", "KHR_texture_transform"};
   return file;
 }
@@ -99,6 +115,8 @@ class Mutator {
                                 4294967295u,
                                 9007199254740993,
                                 1e30,
+                                3.5e38,
+                                1.7e308,
                                 0.5,
                                 -1e-30,
                                 "",

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/import/document.h"
+
+namespace vernier {
+
+/// One animated value over time (glTF 2.0, appendix C).
+class Track {
+ public:
+  /// `place` is the JSON pointer of the sampler. Throws Error(input).
+  Track(const Document& document, const tinygltf::AnimationSampler& sampler, std::string place);
+
+  double first_time() const { return double(times_.front()); }
+  double last_time() const { return double(times_.back()); }
+
+  /// The value at a time; before the first key and after the last those hold. `rotation` interpolates
+  /// quaternions on the sphere. Throws Error(input) unless it is finite.
+  std::vector<double> at(double time, bool rotation) const;
+
+  /// Throws Error(input) unless a key has `width` values.
+  void expect_width(size_t width) const;
+
+ private:
+  /// The value of key i; in cubic tracks part 0 is the in-tangent, 2 the out-tangent.
+  std::vector<double> key(size_t i, size_t part = 1) const;
+  std::vector<double> interpolate(double time, bool rotation) const;
+  std::vector<double> hermite(size_t i, double t, double duration) const;
+
+  const Document& document_;
+  std::string place_;
+  std::vector<float> times_, values_;
+  bool cubic_, step_;
+  size_t width_ = 0;
+};
+
+}  // namespace vernier
