@@ -14,7 +14,7 @@ PunctualLight::PunctualLight(const PunctualLightDescription& d, const Bounds& sc
       cos_outer_(std::cos(d.outer_cone)),
       reach_(4 * scene.radius() + 1) {}
 
-std::optional<LightSample> PunctualLight::sample(const SurfacePoint& from, const Vec2f& /*u*/) const {
+std::optional<LightSample> PunctualLight::sample(const SurfacePoint& from, const Vec2d& /*u*/) const {
   LightSample sample;
   sample.pdf = 1;
   sample.is_delta = true;

@@ -121,10 +121,10 @@ Rgb TriangleLight::emission(const Vec2f& barycentrics, bool front, const Vec3f& 
   return vernier::emission(*geometry_, *material_, point, front, wo);
 }
 
-std::optional<LightSample> TriangleLight::sample(const SurfacePoint& from, const Vec2f& u) const {
+std::optional<LightSample> TriangleLight::sample(const SurfacePoint& from, const Vec2d& u) const {
   const View view(*this, from.position);
   if (view.is_dark()) return std::nullopt;
-  const Vec2f place = view.sample(u);
+  const Vec2f place = view.sample(to_float(u));
   const Vec3f on = at(place);
   const Vec3f to_light = on - from.position;
   const float distance2 = length_squared(to_light);
