@@ -20,8 +20,9 @@ void record_path(const Scene& scene, const Ray& primary, Sampler& sampler, int m
   auto point = scene.intersect(primary);
   for (int bounce = 1; point; ++bounce) {
     sampler.start_block(static_cast<uint32_t>(bounce));
-    const Vec2f light_point = sampler.next2(), direction = sampler.next2();
-    const float light_choice = sampler.next1();
+    const Vec2d light_point = sampler.next2_fine();
+    const Vec2f direction = sampler.next2();
+    const double light_choice = sampler.next1_fine();
     const Vec3f normal = point->front ? point->ng : -point->ng;
     const auto light = scene.sample_light(*point, light_choice, light_point);
     if (light && dot(light->wi, normal) > 0) rays.shadow.push_back(light->shadow);

@@ -28,9 +28,9 @@ class PathIntegrator : public Integrator {
       if (!hit) break;
 
       sampler.start_block(uint32_t(depth));
-      const Vec2f light_point = sampler.next2();
+      const Vec2d light_point = sampler.next2_fine();
       const Vec2f direction = sampler.next2();
-      const float light_choice = sampler.next1();
+      const double light_choice = sampler.next1_fine();
       const float lobe_choice = sampler.next1();
       float roulette = sampler.next1();
 

@@ -76,8 +76,8 @@ class WhittedIntegrator : public Integrator {
       if (const auto sample = light->sample(hit, {0, 0}))
         radiance += shine(walk, hit, surface, *sample, weight);
     walk.sampler.start_block(++walk.block);
-    const Vec2f point = walk.sampler.next2();
-    const float choice = walk.sampler.next1();
+    const Vec2d point = walk.sampler.next2_fine();
+    const double choice = walk.sampler.next1_fine();
     const auto sample = walk.scene.sample_light(hit, choice, point);
     if (sample && !sample->is_delta) radiance += shine(walk, hit, surface, *sample, weight);
     return radiance;

@@ -138,7 +138,7 @@ void Scene::collect_lights(const SceneDescription& description) {
     environment_ = light.get();
     environment_index_ = add(std::move(light));
   }
-  lights_ = LightSet(std::move(lights), bounds());
+  lights_ = LightSet(std::move(lights));
 }
 
 std::optional<SurfacePoint> Scene::intersect(const Ray& ray) const {
@@ -181,7 +181,7 @@ LightReceiver Scene::receiver(const SurfacePoint& point) const {
   return {point.position, point.front ? point.ng : -point.ng};
 }
 
-std::optional<LightSample> Scene::sample_light(const SurfacePoint& from, float u, const Vec2f& v) const {
+std::optional<LightSample> Scene::sample_light(const SurfacePoint& from, double u, const Vec2d& v) const {
   const auto [light, prob] = lights_.choose(receiver(from), u);
   if (!light) return std::nullopt;
   auto sample = light->sample(from, v);

@@ -44,7 +44,7 @@ class Scene {
 
   /// Light shining on a point, the choice among lights included in the pdf (and, for delta lights, in the
   /// radiance). u picks the light, v the point on it.
-  std::optional<LightSample> sample_light(const SurfacePoint& from, float u, const Vec2f& v) const;
+  std::optional<LightSample> sample_light(const SurfacePoint& from, double u, const Vec2d& v) const;
 
   /// Radiance that arrives along `ray` by emission at `hit` (null: from infinity), with the pdf with which
   /// sample_light(*from) would have chosen it. from null: the camera, pdf 0.

@@ -10,6 +10,7 @@
 namespace vernier {
 
 using Vec2f = Imath::V2f;
+using Vec2d = Imath::V2d;
 using Vec3f = Imath::V3f;
 using Vec3d = Imath::V3d;
 using Vec4f = Imath::V4f;

@@ -1,10 +1,15 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/math/vec.h"
+
+// Choices among weighted values. They take numbers of full double precision (Sampler::next1_fine()), since a
+// weight may be a tiny part of the sum: what is drawn less often than float can tell has the probability that
+// is told nevertheless.
 
 namespace vernier {
 
@@ -20,13 +25,14 @@ class AliasTable {
   double sum() const { return sum_; }
 
   /// u in [0, 1).
-  size_t sample(float u) const;
+  size_t sample(double u) const;
   /// Probability of i.
   float prob(size_t i) const { return bins_[i].prob; }
 
  private:
   struct Bin {
-    float threshold = 1, prob = 0;
+    double threshold = 1;
+    float prob = 0;
     uint32_t alias = 0;
   };
   std::vector<Bin> bins_;
@@ -34,7 +40,8 @@ class AliasTable {
 };
 
 /// Piecewise-constant density on [0,1)^2 over a grid of columns x rows, row 0 at y = 0. Inverts cumulative
-/// sums, so that stratified points stay stratified.
+/// sums, so that stratified points stay stratified. The sums are whole numbers, and the density is told from
+/// these: it is exactly that of the samples, for cells of any weight.
 class Distribution2D {
  public:
   Distribution2D() = default;
@@ -42,20 +49,24 @@ class Distribution2D {
   Distribution2D(std::span<const float> values, int columns, int rows);
 
   /// Whether every value is zero.
-  bool empty() const { return total_ == 0; }
+  bool empty() const { return mean_ == 0; }
   /// Mean of the values: the integral over the square.
-  double integral() const { return total_; }
+  double integral() const { return mean_; }
 
   /// A point, and its density in `pdf`.
-  Vec2f sample(const Vec2f& u, float& pdf) const;
+  Vec2f sample(const Vec2d& u, float& pdf) const;
   float pdf(const Vec2f& p) const;
 
  private:
+  std::span<const uint32_t> row(int y) const {
+    return std::span(conditional_).subspan(size_t(y) * (size_t(columns_) + 1), size_t(columns_) + 1);
+  }
+  float density(int column, int row) const;
+
   int columns_ = 0, rows_ = 0;
-  std::vector<float> values_;
-  std::vector<float> conditional_;  ///< per row: columns + 1 running sums, the last 1
-  std::vector<float> marginal_;     ///< rows + 1
-  double total_ = 0;
+  std::vector<uint32_t> conditional_;  ///< per row: columns + 1 cumulative sums
+  std::vector<uint32_t> marginal_;     ///< rows + 1
+  double mean_ = 0;
 };
 
 }  // namespace vernier

@@ -113,7 +113,7 @@ void Sampler::make_lanes() {
     reversed_point ^= nibble[position][(shuffled_ >> (4 * position)) & 15];
   const Lanes seeds = (Lanes{1, 2, 3, 4} + dimension_) * 0x9e3779b9u + block_hash_;
   const Lanes point = reverse_bits(owen_hash(reversed_point, seeds));
-  for (uint32_t lane = 0; lane < lanes; ++lane) values_[lane] = float(point[lane] >> 8) * 0x1p-24f;
+  for (uint32_t lane = 0; lane < lanes; ++lane) points_[lane] = point[lane];
 }
 
 }  // namespace vernier

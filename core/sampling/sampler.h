@@ -23,26 +23,35 @@ class Sampler {
   /// Moves to the first dimension of block `block`.
   void start_block(uint32_t block);
   /// The next number, or the next two, of the block, in [0, 1). At most eight numbers a block.
-  float next1() {
-    if (dimension_ % lanes == 0) make_lanes();
-    return values_[dimension_++ % lanes];
-  }
+  float next1() { return float(next_digits() >> 8) * 0x1p-24f; }
   Vec2f next2() {
     const float x = next1();
     const float y = next1();
+    return {x, y};
+  }
+  /// The same with 53 binary digits, for choices of which some are very improbable. Those after the 32 of the
+  /// Sobol' point are random, as all digits of an Owen scramble are from where the points no longer differ.
+  double next1_fine();
+  Vec2d next2_fine() {
+    const double x = next1_fine();
+    const double y = next1_fine();
     return {x, y};
   }
 
  private:
   static constexpr uint32_t lanes = 4;  ///< dimensions made at once
   void make_lanes();
+  uint32_t next_digits() {
+    if (dimension_ % lanes == 0) make_lanes();
+    return points_[dimension_++ % lanes];
+  }
 
   uint32_t stream_hash_;
   uint32_t reversed_index_;
   uint32_t block_hash_ = 0;
   uint32_t shuffled_ = 0;
   uint32_t dimension_ = 0;
-  std::array<float, lanes> values_;  ///< of the lanes that dimension_ is among
+  std::array<uint32_t, lanes> points_;  ///< of the lanes that dimension_ is among; binary digits
 };
 
 /// 64 to 32 bits, every input bit affecting every output bit (the finaliser of SplitMix64, Steele et al.
@@ -53,6 +62,12 @@ inline uint32_t mix_bits(uint64_t v) {
   v ^= v >> 27;
   v *= 0x94d049bb133111ebull;
   return static_cast<uint32_t>((v ^ (v >> 31)) >> 32);
+}
+
+inline double Sampler::next1_fine() {
+  const uint64_t digits = next_digits();
+  const uint64_t further = mix_bits((digits << 32) ^ (block_hash_ + dimension_));
+  return double((digits << 21) | (further >> 11)) * 0x1p-53;
 }
 
 }  // namespace vernier

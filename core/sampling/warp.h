@@ -6,6 +6,12 @@
 
 namespace vernier {
 
+/// Rounded down, so that it stays below 1.
+inline Vec2f to_float(const Vec2d& u) {
+  const auto rounded = [](double v) { return std::min(float(v), 0x1.fffffep-1f); };
+  return {rounded(u.x), rounded(u.y)};
+}
+
 /// Concentric map of the square to the unit disk (Shirley and Chiu 1997), polar radius and angle chosen per
 /// wedge.
 inline Vec2f sample_disk(const Vec2f& u) {

@@ -68,7 +68,7 @@ Vec3f EnvironmentLight::to_direction(const Vec2f& uv) const {
 
 Rgb EnvironmentLight::radiance(const Vec3f& w) const { return lookup(to_uv(w)); }
 
-std::optional<LightSample> EnvironmentLight::sample(const SurfacePoint& from, const Vec2f& u) const {
+std::optional<LightSample> EnvironmentLight::sample(const SurfacePoint& from, const Vec2d& u) const {
   if (distribution_.empty()) return std::nullopt;
   float pdf;
   const Vec2f uv = distribution_.sample(u, pdf);

@@ -30,7 +30,7 @@ class Light {
   virtual ~Light() = default;
 
   /// A direction from `from` toward the light; empty where it contributes nothing.
-  virtual std::optional<LightSample> sample(const SurfacePoint& from, const Vec2f& u) const = 0;
+  virtual std::optional<LightSample> sample(const SurfacePoint& from, const Vec2d& u) const = 0;
 
   /// What arrives at `from` along the unit direction -wi from the point `on` of this light (null: from
   /// infinity), which a ray has met and which therefore is there.

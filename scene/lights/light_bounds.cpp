@@ -1,12 +1,51 @@
 #include "scene/lights/light_bounds.h"
 
+#include "core/math/rounding.h"
+
 namespace vernier {
 namespace {
 
-Vec3f rotate_toward(const Vec3f& from, const Vec3f& to, float angle) {
-  const Vec3f across = to - from * dot(from, to);
-  const float size = length(across);
-  return size > 0 ? from * std::cos(angle) + across * (std::sin(angle) / size) : from;
+constexpr double half_turn = std::numbers::pi;
+
+/// Directions about an axis, whose length does not matter, up to an angle from it.
+struct Cone {
+  Vec3d axis{0, 0, 1};
+  double spread = half_turn;
+};
+
+/// Of a light without a direction, the whole sphere.
+Cone cone_of(const LightBounds& bounds) {
+  const Vec3d axis(bounds.axis);
+  if (!(std::abs(length(axis) - 1) < 1e-3) || !(bounds.cos_spread > -1)) return {};
+  return {axis, std::acos(std::min(double(bounds.cos_spread), 1.0))};
+}
+
+/// Through sine and cosine both, which keeps the digits of angles near 0 and pi.
+double angle_between(const Vec3d& a, const Vec3d& b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
+
+Vec3d rotate_toward(const Vec3d& from, const Vec3d& to, double angle) {
+  const Vec3d start = normalize(from), across = normalize(to - start * dot(start, to));
+  return start * std::cos(angle) + across * std::sin(angle);
+}
+
+/// The smallest cone about both, but for axes that are opposite, or nearly so: between those no direction is
+/// better than another, and the whole sphere is about as small.
+Cone join(const Cone& a, const Cone& b) {
+  if (a.spread >= half_turn || b.spread >= half_turn) return {};
+  const double apart = angle_between(a.axis, b.axis);
+  if (apart + b.spread <= a.spread) return a;
+  if (apart + a.spread <= b.spread) return b;
+  const double spread = (a.spread + apart + b.spread) / 2;
+  if (spread >= half_turn || apart > half_turn - 1e-3) return {};
+  // The axis is kept in float. What it is then decides how wide the cone has to be.
+  const Vec3d axis(Vec3f(rotate_toward(a.axis, b.axis, spread - a.spread)));
+  return {axis, std::max(angle_between(axis, a.axis) + a.spread, angle_between(axis, b.axis) + b.spread)};
+}
+
+/// Rounded so that the cone only grows.
+float cosine_of_spread(double spread) {
+  if (spread == 0) return 1;
+  return std::max(next_float_down(float(std::cos(spread))), -1.f);
 }
 
 }  // namespace
@@ -14,31 +53,18 @@ Vec3f rotate_toward(const Vec3f& from, const Vec3f& to, float angle) {
 LightBounds merge(const LightBounds& a, const LightBounds& b) {
   if (a.power == 0) return b;
   if (b.power == 0) return a;
-  LightBounds both = a;
-  both.box.add(b.box.lower);
-  both.box.add(b.box.upper);
+  LightBounds both;
+  both.box = a.box;
+  both.box.add(b.box);
   both.power = a.power + b.power;
   both.two_sided = a.two_sided || b.two_sided;
   both.cos_emission = std::min(a.cos_emission, b.cos_emission);
-
-  // Smallest cone about both spreads.
-  const auto angle = [](float cosine) { return std::acos(std::clamp(cosine, -1.f, 1.f)); };
-  const float spread_a = angle(a.cos_spread), spread_b = angle(b.cos_spread);
-  const Vec3f axis_b = both.two_sided && dot(a.axis, b.axis) < 0 ? -b.axis : b.axis;
-  const float apart = angle(dot(a.axis, axis_b));
-  if (std::min(apart + spread_b, pi) <= spread_a) return both;
-  if (std::min(apart + spread_a, pi) <= spread_b) {
-    both.axis = axis_b;
-    both.cos_spread = b.cos_spread;
-    return both;
-  }
-  const float spread = (spread_a + apart + spread_b) / 2;
-  if (spread >= pi) {
-    both.cos_spread = -1;
-    return both;
-  }
-  both.axis = normalize(rotate_toward(a.axis, axis_b, spread - spread_a));
-  both.cos_spread = std::cos(spread);
+  const Cone cone_a = cone_of(a);
+  Cone cone_b = cone_of(b);
+  if (both.two_sided && dot(cone_a.axis, cone_b.axis) < 0) cone_b.axis = -cone_b.axis;
+  const Cone cone = join(cone_a, cone_b);
+  both.axis = Vec3f(cone.axis);
+  both.cos_spread = cosine_of_spread(cone.spread);
   return both;
 }
 

@@ -9,20 +9,21 @@
 
 namespace vernier {
 
-/// All lights of a scene, and the choice among them: lights at infinity, and all others together, in
-/// proportion to power; those with a place by a tree that knows where they are.
+/// All lights of a scene, and the choice among them. Those with a place are chosen by a tree that knows where
+/// they are, those at infinity in proportion to their irradiance, and between the two the irradiances decide
+/// that they may cause at the receiver.
 class LightSet {
  public:
   LightSet() = default;
   /// A light of no power is never chosen.
-  LightSet(std::vector<std::unique_ptr<Light>> lights, const Bounds& scene);
+  explicit LightSet(std::vector<std::unique_ptr<Light>> lights);
 
   struct Choice {
     const Light* light = nullptr;
     float prob = 0;
   };
   /// A light that may shine on the receiver; null when there is none. u in [0, 1).
-  Choice choose(const LightReceiver& receiver, float u) const;
+  Choice choose(const LightReceiver& receiver, double u) const;
   /// Probability that choose() picks light i.
   float prob(const LightReceiver& receiver, size_t i) const;
 
@@ -33,16 +34,16 @@ class LightSet {
   const Light& operator[](size_t i) const { return *lights_[i]; }
 
  private:
-  /// With so many lights that have a place there is something to choose.
-  static constexpr size_t tree_threshold = 2;
+  /// Probability that the tree chooses, by what its root may send to the receiver.
+  double finite_share(const LightTree::Weights& root) const;
 
   std::vector<std::unique_ptr<Light>> lights_;
   std::vector<const Light*> delta_lights_;
-  /// By power; with a tree, over the lights at infinity and, last, the tree as a whole.
-  AliasTable by_power_;
-  std::vector<uint32_t> listed_;  ///< lights of by_power_
-  std::vector<int32_t> place_;    ///< by light: index in by_power_, or -1 when it is in the tree
-  std::optional<LightTree> tree_;
+  bool is_single_ = false;  ///< there is one light, and nothing to choose
+  std::vector<const Light*> infinite_lights_;
+  AliasTable infinite_;         ///< over infinite_lights_, by irradiance
+  std::vector<int32_t> place_;  ///< by light: index in infinite_lights_, or -1
+  LightTree tree_;              ///< over all others
 };
 
 }  // namespace vernier

@@ -36,19 +36,24 @@ float cost(const LightBounds& group, const Bounds& parent, int axis) {
   return regularity * group.power * orientation_measure(group) * surface_area(group.box);
 }
 
-float sum(const Float8& x) {
-  float total = 0;
-  for (int i = 0; i < LightNode::width; ++i) total += x[i];
-  return total;
+double sum(const Float8& x) {
+  return ((double(x[0]) + x[1]) + (double(x[2]) + x[3])) + ((double(x[4]) + x[5]) + (double(x[6]) + x[7]));
 }
 
 }  // namespace
 
-LightTree::LightTree(std::span<const LightBounds> bounds) : places_(bounds.size()) {
+LightTree::LightTree(std::vector<LightBounds> bounds) : places_(bounds.size()) {
   std::vector<uint32_t> lights;
-  for (uint32_t i = 0; i < bounds.size(); ++i)
-    if (bounds[i].power > 0) lights.push_back(i);
+  for (uint32_t i = 0; i < bounds.size(); ++i) {
+    if (!(bounds[i].power > 0)) continue;
+    bounds[i].power = std::min(bounds[i].power, std::numeric_limits<float>::max());
+    power_ += bounds[i].power;
+    lights.push_back(i);
+  }
   if (lights.empty()) return;
+  // As parts of the whole, powers of any size have sums and quotients that float can hold.
+  for (const uint32_t i : lights)
+    bounds[i].power = std::max(float(bounds[i].power / power_), std::numeric_limits<float>::min());
   std::vector<BinaryNode> binary;
   binary.reserve(2 * lights.size());
   build(binary, bounds, lights, 0);
@@ -149,38 +154,46 @@ uint32_t LightTree::widen(const std::vector<BinaryNode>& binary, uint32_t root, 
   return index;
 }
 
-LightTree::Pick LightTree::sample(const LightReceiver& receiver, float u) const {
-  if (nodes_.empty()) return {};
-  float prob = 1;
-  const LightNode* node = nodes_.data();
-  while (true) {
-    const Float8 weights = node->importance(receiver);
-    const float total = sum(weights);
-    if (!(total > 0)) return {};
-    // The slot whose share of u it is; rounding may run past the last.
-    float rest = u * total;
-    int slot = -1;
-    for (int i = 0; i < LightNode::width; ++i) {
-      if (!(weights[i] > 0)) continue;
-      if (slot >= 0) rest -= weights[slot];
-      slot = i;
-      if (rest < weights[i]) break;
-    }
-    prob *= weights[slot] / total;
-    if (node->leaf >> slot & 1) return {node->child[size_t(slot)], prob};
-    u = std::clamp(rest / weights[slot], 0.f, 0x1.fffffep-1f);
-    node = &nodes_[node->child[size_t(slot)]];
-  }
+LightTree::Weights LightTree::weigh(const LightNode& node, const LightReceiver& receiver) {
+  const Float8 weights = node.importance(receiver);
+  return {weights, sum(weights)};
 }
 
-float LightTree::prob(const LightReceiver& receiver, uint32_t light) const {
+LightTree::Weights LightTree::weigh(const LightReceiver& receiver) const {
+  return nodes_.empty() ? Weights{} : weigh(nodes_.front(), receiver);
+}
+
+LightTree::Pick LightTree::sample(const LightReceiver& receiver, Weights weights, double u) const {
+  double prob = 1;
+  const LightNode* node = nodes_.data();
+  while (weights.sum > 0) {
+    // The slot whose share of u it is; rounding may run past the last.
+    double rest = u * weights.sum;
+    int slot = -1;
+    for (int i = 0; i < LightNode::width; ++i) {
+      if (!(weights.slots[i] > 0)) continue;
+      if (slot >= 0) rest -= weights.slots[slot];
+      slot = i;
+      if (rest < weights.slots[i]) break;
+    }
+    prob *= weights.slots[slot] / weights.sum;
+    if (node->leaf >> slot & 1) return {node->child[size_t(slot)], prob};
+    // Stretched to choose within it. What a choice takes of the digits of u is what makes it improbable.
+    u = std::clamp(rest / weights.slots[slot], 0.0, 1.0);
+    node = &nodes_[node->child[size_t(slot)]];
+    weights = weigh(*node, receiver);
+  }
+  return {};
+}
+
+double LightTree::prob(const LightReceiver& receiver, const Weights& root, uint32_t light) const {
   if (places_[light].slot == LightNode::width) return 0;
-  float prob = 1;
+  double prob = 1;
   for (auto [index, slot] = places_[light];;) {
     const LightNode& node = nodes_[index];
-    const Float8 weights = node.importance(receiver);
-    if (!(weights[slot] > 0)) return 0;
-    prob *= weights[slot] / sum(weights);
+    const Weights weights = index == 0 ? root : weigh(node, receiver);
+    if (!(weights.slots[slot] > 0)) return 0;
+    prob *= weights.slots[slot] / weights.sum;
     if (index == 0) return prob;
     slot = node.slot_in_parent;
     index = node.parent;

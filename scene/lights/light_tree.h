@@ -14,15 +14,27 @@ namespace vernier {
 /// and worst guesses, high up, are skipped.
 class LightTree {
  public:
+  LightTree() = default;
   /// bounds[i] belongs to light i; those of no power are never picked.
-  explicit LightTree(std::span<const LightBounds> bounds);
+  explicit LightTree(std::vector<LightBounds> bounds);
+
+  /// What the parts of a node may send to a receiver, relative to each other, and all together; 0: nothing.
+  struct Weights {
+    Float8 slots{};
+    double sum = 0;
+  };
+  /// Of the root, with which a choice for that receiver begins.
+  Weights weigh(const LightReceiver& receiver) const;
+  /// About the irradiance that all lights together may cause there, were nothing in between.
+  double irradiance(const Weights& root) const { return power_ * root.sum / double(pi); }
 
   struct Pick {
     uint32_t light = 0;
-    float prob = 0;  ///< 0: no light can reach the receiver
+    double prob = 0;  ///< 0: no light can reach the receiver
   };
-  Pick sample(const LightReceiver& receiver, float u) const;
-  float prob(const LightReceiver& receiver, uint32_t light) const;
+  /// u in [0, 1). Lights down to a probability of 2^-40 are picked as often as `prob` says, to 2^-13 of it.
+  Pick sample(const LightReceiver& receiver, Weights root, double u) const;
+  double prob(const LightReceiver& receiver, const Weights& root, uint32_t light) const;
 
  private:
   struct BinaryNode {
@@ -34,12 +46,14 @@ class LightTree {
     uint32_t node = 0, slot = LightNode::width;  ///< no slot: never picked
   };
 
+  static Weights weigh(const LightNode& node, const LightReceiver& receiver);
   static void build(std::vector<BinaryNode>& nodes, std::span<const LightBounds> bounds,
                     std::span<uint32_t> lights, int depth);
   uint32_t widen(const std::vector<BinaryNode>& binary, uint32_t root, uint32_t parent, uint32_t slot);
 
   std::vector<LightNode> nodes_;
   std::vector<Place> places_;  ///< by light
+  double power_ = 0;           ///< of all lights; the nodes hold parts of it
 };
 
 }  // namespace vernier

@@ -13,7 +13,7 @@ PunctualLight::PunctualLight(const PunctualLightDescription& d)
       cos_inner_(std::cos(d.inner_cone)),
       cos_outer_(std::cos(d.outer_cone)) {}
 
-std::optional<LightSample> PunctualLight::sample(const SurfacePoint& from, const Vec2f& /*u*/) const {
+std::optional<LightSample> PunctualLight::sample(const SurfacePoint& from, const Vec2d& /*u*/) const {
   LightSample sample;
   sample.pdf = 1;
   sample.is_delta = true;

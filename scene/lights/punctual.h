@@ -10,7 +10,7 @@ class PunctualLight : public Light {
  public:
   explicit PunctualLight(const PunctualLightDescription& description);
 
-  std::optional<LightSample> sample(const SurfacePoint& from, const Vec2f& u) const override;
+  std::optional<LightSample> sample(const SurfacePoint& from, const Vec2d& u) const override;
   LightEval eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const override;
   float power(const Bounds& scene) const override;
   std::optional<LightBounds> bounds() const override;

@@ -127,10 +127,10 @@ float TriangleLight::coverage(const Vec2f& barycentrics) const {
                            geometry_->surface_point(instance_, primitive_, barycentrics));
 }
 
-std::optional<LightSample> TriangleLight::sample(const SurfacePoint& from, const Vec2f& u) const {
+std::optional<LightSample> TriangleLight::sample(const SurfacePoint& from, const Vec2d& u) const {
   const View view(*this, from.position);
   if (view.is_dark()) return std::nullopt;
-  const Vec2f place = view.sample(u);
+  const Vec2f place = view.sample(to_float(u));
   const Vec3f on = at(place);
   const Vec3f to_light = on - from.position;
   const float distance2 = length_squared(to_light);

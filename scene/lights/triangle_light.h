@@ -17,7 +17,7 @@ class TriangleLight : public Light {
   /// as one, has less noise than two. False: nothing has changed.
   bool join(const TriangleLight& other);
 
-  std::optional<LightSample> sample(const SurfacePoint& from, const Vec2f& u) const override;
+  std::optional<LightSample> sample(const SurfacePoint& from, const Vec2d& u) const override;
   LightEval eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const override;
   float power(const Bounds& /*scene*/) const override { return power_; }
   std::optional<LightBounds> bounds() const override;

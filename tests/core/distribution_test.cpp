@@ -64,6 +64,28 @@ TEST(AliasTable, RoundingNeverGivesZeroWeightABin) {
   }
 }
 
+// A weight far below what a float near 1 can tell apart has its part of the numbers nevertheless.
+TEST(AliasTable, GivesVeryUnequalWeightsTheirProbability) {
+  for (const float faint : {1e-8f, 1e-12f}) {
+    const AliasTable table(std::vector<float>{1, faint});
+    EXPECT_FLOAT_EQ(table.prob(1), faint);
+    EXPECT_EQ(table.sample(0.25), 0u);
+    EXPECT_EQ(table.sample(0.5 + 0.99 * faint), 1u);
+    EXPECT_EQ(table.sample(0.5 + 1.01 * faint), 0u);
+  }
+}
+
+TEST(AliasTable, BadWeightsAreNoPlaceForRounding) {
+  for (size_t n = 2; n < 100; ++n) {
+    std::vector<float> weights(n, 0.1f);
+    weights[0] = nan;
+    weights[n / 2] = inf;
+    weights[n - 1] = 0.7f;
+    const AliasTable table(weights);
+    for (size_t i = 0; i < 64 * n; ++i) ASSERT_GT(table.prob(table.sample(double(i) / double(64 * n))), 0);
+  }
+}
+
 TEST(AliasTable, EmptyWhenNothingCanBePicked) {
   EXPECT_TRUE(AliasTable().empty());
   EXPECT_TRUE(AliasTable(std::vector<float>{}).empty());
@@ -150,6 +172,60 @@ TEST(Distribution2D, OneBrightCellAmongZeroes) {
     EXPECT_FLOAT_EQ(pdf, 64 * 64);
     EXPECT_EQ(int(p.x * 64), 63);
     EXPECT_EQ(int(p.y * 64), 13);
+  }
+}
+
+/// A row of `cells` cells of about 1, one of them `bright`.
+std::vector<float> row_with_sun(int cells, int sun, float bright) {
+  std::vector<float> values;
+  for (int i = 0; i < cells; ++i) values.push_back(i == sun ? bright : 1 + float(i % 5));
+  return values;
+}
+
+// Beside a cell that has nearly all, each of the others is drawn as often as its density says, and evenly
+// within.
+TEST(Distribution2D, FaintCellsAreDrawnAsTold) {
+  constexpr int cells = 8192, sun = 5000;
+  for (const float bright : {1e6f, 1e8f, 1e10f}) {
+    const Distribution2D distribution(row_with_sun(cells, sun, bright), cells, 1);
+    double begin = 0, told = 0;
+    for (int i = 0; i < cells; ++i) {
+      const double prob = distribution.pdf({(float(i) + 0.5f) / cells, 0.5f}) / double(cells);
+      ASSERT_GT(prob, 0);
+      told += prob;
+      if (i > sun) continue;  // digits of u are fewer near its end
+      for (const double place : {0.02, 0.5, 0.98}) {
+        float pdf = 0;
+        const Vec2f p = distribution.sample({begin + place * prob, 0.5}, pdf);
+        ASSERT_FLOAT_EQ(pdf, float(prob * cells)) << i;
+        ASSERT_NEAR(p.x * cells, i + place, 0.01) << i;
+      }
+      begin += prob;
+    }
+    EXPECT_NEAR(told, 1, 1e-7);
+  }
+}
+
+// The density is in proportion to the values to what 32 binary digits of the row can tell.
+TEST(Distribution2D, FaintCellsHaveTheDensityOfTheirValue) {
+  constexpr int cells = 8192, sun = 5000;
+  const auto values = row_with_sun(cells, sun, 1e6f);
+  const Distribution2D distribution(values, cells, 1);
+  for (int i = 0; i < cells; ++i)
+    ASSERT_NEAR(distribution.pdf({(float(i) + 0.5f) / cells, 0.5f}) * distribution.integral(),
+                values[size_t(i)], 0.001 * values[size_t(i)]);
+}
+
+// One row in a thousand has nearly all.
+TEST(Distribution2D, FaintRowsAreDrawnAsTold) {
+  constexpr int cells = 1000;
+  const Distribution2D distribution(row_with_sun(cells, 300, 1e9f), 1, cells);
+  double begin = 0;
+  for (int i = 0; i < 300; ++i) {
+    const double prob = distribution.pdf({0.5f, (float(i) + 0.5f) / cells}) / double(cells);
+    float pdf = 0;
+    ASSERT_NEAR(distribution.sample({0.5, begin + 0.5 * prob}, pdf).y * cells, i + 0.5, 0.01);
+    begin += prob;
   }
 }
 

@@ -21,6 +21,18 @@ std::array<float, dimensions> draw(uint32_t stream, uint32_t index, uint64_t see
   return numbers;
 }
 
+// p-value of uniformity of the pairs that `pair` makes of a number i, on an n x n grid.
+template <typename Pair>
+double uniformity(uint64_t samples, const Pair& pair) {
+  constexpr int n = 16;
+  std::vector<double> observed(n * n), expected(n * n, double(samples) / (n * n));
+  for (uint64_t i = 0; i < samples; ++i) {
+    const Vec2f u = pair(uint32_t(i));
+    observed[size_t(u.x * n) * n + size_t(u.y * n)] += 1;
+  }
+  return test::chi_square_p_value(observed, expected);
+}
+
 struct Place {
   uint32_t stream, block;
   uint64_t seed;
@@ -51,6 +63,41 @@ TEST(Sampler, PairsAreTwoNumbers) {
   const auto expected = draw(3, 9, 4, 1);
   EXPECT_EQ(sampler.next1(), expected[0]);
   EXPECT_EQ(sampler.next2(), Vec2f(expected[1], expected[2]));
+}
+
+// Numbers of 53 digits begin with the digits of the others, and take as much of the block.
+TEST(Sampler, FineNumbersRefineTheOthers) {
+  for (uint32_t index = 0; index < 1000; ++index) {
+    Sampler sampler(3, index, 4);
+    const auto coarse = draw(3, index, 4, 0);
+    for (int d = 0; d < 6; ++d) {
+      const double fine = sampler.next1_fine();
+      ASSERT_LT(fine, 1);
+      ASSERT_EQ(float(uint32_t(fine * 0x1p24)) * 0x1p-24f, coarse[size_t(d)]);
+    }
+    const Vec2d pair = sampler.next2_fine();
+    ASSERT_NEAR(pair.x, coarse[6], 0x1p-24);
+    ASSERT_NEAR(pair.y, coarse[7], 0x1p-24);
+  }
+}
+
+// Digits after those of the Sobol' points are random: uniform, and independent of those before and of other
+// dimensions'.
+TEST(Sampler, DigitsBeyondThePointsAreRandom) {
+  const auto beyond = [](double u) { return float(u * 0x1p32 - std::floor(u * 0x1p32)); };
+  EXPECT_TRUE(test::confirmed(significance, 200'000, [&](uint64_t seed, uint64_t samples) {
+    return uniformity(samples, [&](uint32_t i) {
+      Sampler sampler(5, i, seed);
+      const double u = sampler.next1_fine(), v = sampler.next1_fine();
+      return Vec2f(beyond(u), beyond(v));
+    });
+  }));
+  EXPECT_TRUE(test::confirmed(significance, 200'000, [&](uint64_t seed, uint64_t samples) {
+    return uniformity(samples, [&](uint32_t i) {
+      const double u = Sampler(i, 0, seed).next1_fine();
+      return Vec2f(float(u * 0x1p24 - std::floor(u * 0x1p24)), beyond(u));
+    });
+  }));
 }
 
 TEST(Sampler, StartsAtBlockZero) {
@@ -97,18 +144,6 @@ TEST(Sampler, FirstTwoDimensionsFillEveryElementaryInterval) {
           }
           for (const int count : hits) ASSERT_EQ(count, 1) << columns << "x" << rows << ", run " << run;
         }
-}
-
-// p-value of uniformity of the pairs that `pair` makes of a number i, on an n x n grid.
-template <typename Pair>
-double uniformity(uint64_t samples, const Pair& pair) {
-  constexpr int n = 16;
-  std::vector<double> observed(n * n), expected(n * n, double(samples) / (n * n));
-  for (uint64_t i = 0; i < samples; ++i) {
-    const Vec2f u = pair(uint32_t(i));
-    observed[size_t(u.x * n) * n + size_t(u.y * n)] += 1;
-  }
-  return test::chi_square_p_value(observed, expected);
 }
 
 TEST(Sampler, UniformAndIndependentOverStreams) {

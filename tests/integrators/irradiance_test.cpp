@@ -167,6 +167,67 @@ TEST(Irradiance, SeveralPunctualLights) {
               1e-5);
 }
 
+/// A floor that wide under a sun at the sun's own scale, and a lid that shades the middle: the sun's power on
+/// it is up to 10^10 times a lamp's.
+SceneBuilder sun_and_lid(float floor) {
+  PunctualLightDescription sun;
+  sun.kind = PunctualLightDescription::Kind::directional;
+  sun.intensity = 1e5f;
+  sun.to_world = {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}, {0, 0, 0}};
+  return SceneBuilder()
+      .add(parallelogram({-floor / 2, 0, -floor / 2}, {0, 0, floor}, {floor, 0, 0}), diffuse(1))
+      .add(parallelogram({-4, 3, -4}, {8, 0, 0}, {0, 0, 8}), diffuse(0))
+      .add(sun);
+}
+
+// Lamps have their light beside a sun, where that does not reach and where it does.
+TEST(Irradiance, LampsBesideTheSun) {
+  for (const float floor : {40.f, 400.f, 4000.f}) {
+    SceneBuilder builder = sun_and_lid(floor);
+    double in_shade = 0;
+    for (const float x : {-1.f, 2.f}) {
+      PunctualLightDescription lamp;
+      lamp.intensity = 10;
+      lamp.to_world.origin = {x, 2, 0};
+      builder.add(lamp);
+      in_shade += 10 * 2 / std::pow(4 + double(x) * x, 1.5);
+    }
+    const Scene scene = builder.build();
+    IntegratorOptions options;
+    options.max_depth = 2;
+    const auto sees_at = [&](float x, double irradiance) {
+      return sees(scene, *path(options), ray_through({x, 0.3f, 3}, {x, 0, 0}), irradiance / pi_d, 3e-3);
+    };
+    EXPECT_TRUE(sees_at(0, in_shade)) << floor;
+    EXPECT_TRUE(sees_at(9, 1e5)) << floor;
+  }
+}
+
+// Lamps that shine up and down, back to back: a group of opposite cones has the whole sphere.
+TEST(Irradiance, OppositeSpots) {
+  for (const int pairs : {4, 12, 40}) {
+    SceneBuilder builder;
+    builder.add(parallelogram({-20, 0, -20}, {0, 0, 40}, {200, 0, 0}), diffuse(1));
+    PunctualLightDescription spot;
+    spot.kind = PunctualLightDescription::Kind::spot;
+    spot.intensity = 10;
+    spot.inner_cone = 0.6f;
+    const double inner = std::cos(0.6), outer = std::cos(double(spot.outer_cone)), x = 4.2;
+    double expected = 0;
+    for (int i = 0; i < pairs; ++i) {
+      for (const float side : {-1.f, 1.f}) {
+        spot.to_world = {{1, 0, 0}, {0, 0, -side}, {0, side, 0}, {3.f * float(i), 3, 0}};
+        builder.add(spot);
+      }
+      const double d2 = 9 + std::pow(3. * i - x, 2), cosine = 3 / std::sqrt(d2);
+      expected += 10 * cosine / d2 * std::pow(std::clamp((cosine - outer) / (inner - outer), 0., 1.), 2);
+    }
+    IntegratorOptions options;
+    options.max_depth = 2;
+    EXPECT_TRUE(sees(builder.build(), *path(options), sight(float(x)), expected / pi_d, 3e-3)) << pairs;
+  }
+}
+
 // Sky a + b cos: E = pi a + 2 pi b / 3.
 TEST(Irradiance, Environment) {
   const Scene scene =

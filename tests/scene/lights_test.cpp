@@ -323,6 +323,40 @@ TEST(EnvironmentLight, BlackIsNeverSampled) {
   EXPECT_EQ(black.power({}), 0);
 }
 
+// An unclipped sun in a picture of 8192 columns: light sampling alone finds the sky as bright as it is, above
+// the sun and beside it. Few numbers lead there, so only those that may are drawn: one below 1/500 for the
+// row, and for the column.
+TEST(EnvironmentLight, SkyBesideASunIsSampledWithoutBias) {
+  constexpr int width = 8192, height = 16, sun_row = 7;
+  const EnvironmentLight sky = environment(width, height, [](int x, int y) {
+    return y == sun_row && x >= 3000 && x < 3004 ? 1e8f : 1 + float(x % 8);
+  });
+  constexpr double mean = 4.5, few = 0.002, left = 2944. / width;
+  const double top = std::cos(std::numbers::pi * (sun_row - 1) / height),
+               bottom = std::cos(std::numbers::pi * (sun_row + 2) / height);
+  Random random(7);
+  const auto estimate = [&](const Vec2d& u, bool above) {
+    const auto sample = sky.sample({}, u);
+    if (!sample) return 0.;
+    const double turn =
+        (std::atan2(double(sample->wi.z), double(sample->wi.x)) + 0.8) / (2 * std::numbers::pi) + 0.5;
+    const bool counts = above ? sample->wi.y > top
+                              : sample->wi.y < top && sample->wi.y > bottom && turn - std::floor(turn) < left;
+    return counts ? double(sample->radiance.x) / sample->pdf : 0;
+  };
+  Samples above, beside;
+  for (int i = 0; i < 400'000 / thinning; ++i) {
+    const double fine = random.next1() + random.next1() * 0x1p-24;
+    above.add(few * estimate({random.next1(), few * fine}, true));
+    beside.add(few * estimate({few * fine, random.next1()}, false));
+  }
+  const double all_around = 2 * std::numbers::pi * mean;
+  EXPECT_GT(mean_p_value(above, all_around * (1 - top)), 1e-4);
+  EXPECT_GT(mean_p_value(beside, all_around * left * (top - bottom)), 1e-4);
+  EXPECT_LT(above.standard_error(), 0.01 * above.mean());
+  EXPECT_LT(beside.standard_error(), 0.03 * beside.mean());
+}
+
 // One texel of 10^6: samples go there, and their mean weight is its irradiance with hardly any noise.
 TEST(EnvironmentLight, SingleTexelIsSampledWithoutFireflies) {
   const EnvironmentLight sun =
