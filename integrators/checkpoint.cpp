@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 static_assert(std::endian::native == std::endian::little, "checkpoints are little-endian");
 static_assert(sizeof(RenderResult::Look) == 6 * sizeof(double));
 
-constexpr uint32_t format = 1;
+constexpr uint32_t format = 2;
 constexpr size_t fingerprint_length = 32;
 constexpr uint32_t longest_header = 1 << 20;
 
@@ -56,7 +56,7 @@ void for_each_array(State& state, Plan& plan_counts, const Visit& visit) {
   visit("film", state.so_far.film.bytes());
   visit("guide 1", state.guides[0].bytes());
   visit("guide 2", state.guides[1].bytes());
-  visit("taken", bytes_of(state.taken));
+  visit("extra", bytes_of(state.drawn.extra));
   visit("plan", bytes_of(plan_counts));
   visit("parts", bytes_of(state.parts));
   visit("looks", bytes_of(state.so_far.convergence));
@@ -71,8 +71,9 @@ Json header_of(const RenderIdentity& identity, const RenderState& state) {
               {"height", so_far.film.height()},
               {"adaptive", !state.guides[0].bytes().empty()},
               {"done", state.done},
+              {"guiding", state.drawn.guiding},
               {"looked_at", state.looked_at},
-              {"pass", {{"size", pass.size}, {"odd_half", pass.odd_half}, {"fewest", pass.fewest}}},
+              {"pass", {{"size", pass.size}, {"odd_half", pass.odd_half}, {"guiding", pass.guiding}}},
               {"seconds", so_far.seconds},
               {"samples", so_far.samples},
               {"rays", {so_far.rays.camera, so_far.rays.bounce, so_far.rays.shadow}},
@@ -153,6 +154,7 @@ void read_state(Reader& reader, const Json& header, Checkpoint& checkpoint) {
   RenderState& state = *checkpoint.state;
   RenderResult& so_far = state.so_far;
   state.done = header.at("done");
+  header.at("guiding").get_to(state.drawn.guiding);
   state.looked_at = header.at("looked_at");
   so_far.seconds = header.at("seconds");
   so_far.samples = header.at("samples");
@@ -165,11 +167,11 @@ void read_state(Reader& reader, const Json& header, Checkpoint& checkpoint) {
   pass.width = width;
   pass.size = pass_header.at("size");
   pass.odd_half = pass_header.at("odd_half");
-  pass.fewest = pass_header.at("fewest");
+  pass.guiding = pass_header.at("guiding");
   const auto count = [&](size_t array, size_t element) {
     return arrays.at(array).at("bytes").get<uint64_t>() / element;
   };
-  if (count(4, sizeof(uint16_t)) > 0) pass.counts.resize(state.taken.size());
+  if (count(4, sizeof(uint16_t)) > 0) pass.counts.resize(state.drawn.extra.size());
   if (pass.size > 0) state.parts.resize(size_t(state.tile_count()));
   so_far.convergence.resize(count(6, sizeof(RenderResult::Look)));
   so_far.bad_sample_examples.resize(count(7, sizeof(BadSample)));

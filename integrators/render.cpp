@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "integrators/camera_sample.h"
+#include "integrators/observer_thread.h"
 #include "integrators/render_state.h"
 #include "scene/scene.h"
 
@@ -14,9 +15,7 @@ namespace vernier {
 namespace {
 
 constexpr int tile_size = RenderState::tile_size;
-constexpr uint32_t pilot = 16;  // samples a pixel before any decision is taken
 constexpr size_t kept_bad_samples = 8;
-constexpr double report_interval = 0.2;  // seconds
 
 /// How many times the error asked for there is: by the figure itself, and by the end of its interval, which
 /// may be a tenth larger. At 1 the picture is good enough, and with 97.5 % confidence not much worse than
@@ -28,7 +27,13 @@ double excess(const ErrorEstimate& error, double asked) {
 /// Of the pass after `done` samples a pixel. Passes double at first, so that a picture comes soon and
 /// stratified sets of samples are completed; later ones are short enough to look often at clock and target,
 /// long enough that planning them costs nothing.
-uint32_t pass_size(uint32_t done) { return std::clamp(done, 2u, std::max(pilot, done / 4)); }
+uint32_t pass_size(uint32_t done) { return std::clamp(done, 2u, std::clamp(done / 4, pilot, 1u << 14)); }
+
+/// Keeps those that come first in the picture, whatever the order in which they are found.
+void keep_few(std::vector<BadSample>& examples) {
+  std::sort(examples.begin(), examples.end());
+  if (examples.size() > kept_bad_samples) examples.resize(kept_bad_samples);
+}
 
 /// One render call. Tiles write disjoint pixels of the film; totals are merged once a tile.
 class Renderer {
@@ -64,15 +69,12 @@ class Renderer {
   struct Totals {
     uint64_t samples = 0;
     RayCounts rays;
-    std::vector<BadSample> bad;
+    uint64_t bad_samples = 0;
+    std::vector<BadSample> bad_sample_examples;
   };
 
   RenderResult& result() { return state_.so_far; }
   const RenderResult& result() const { return state_.so_far; }
-  /// Samples drawn so far: their index goes on even where the film rejects one.
-  uint32_t& taken(int x, int y, int half) {
-    return state_.taken[(size_t(y) * crop_.width + x) * Film::halves + size_t(half)];
-  }
   double samples_per_pixel() const { return double(result().samples) / (double(crop_.width) * crop_.height); }
   double seconds() const {
     const std::chrono::duration<double> running = std::chrono::steady_clock::now() - start_;
@@ -84,8 +86,8 @@ class Renderer {
   void plan_pass() {
     const uint32_t size = pass_size(state_.done);
     const bool may_adapt = options_.adaptive && state_.done >= pilot;
-    state_.pass = may_adapt ? SamplePlan::adaptive(result().film, state_.guides, size)
-                            : SamplePlan::uniform(result().film, size);
+    state_.pass = may_adapt ? SamplePlan::adaptive(state_.drawn, state_.guides, size)
+                            : SamplePlan::uniform(state_.drawn, size);
     state_.parts.assign(size_t(state_.tile_count()), 0);
   }
 
@@ -100,6 +102,8 @@ class Renderer {
   }
   void end_pass() {
     state_.done += state_.pass.size();
+    for (int half = 0; half < Film::halves; ++half)
+      state_.drawn.guiding[size_t(half)] += state_.pass.guiding_count(half);
     state_.pass = {};
     state_.parts.clear();
   }
@@ -168,7 +172,7 @@ class Renderer {
         for (int half = 0; half < Film::halves; ++half) {
           const uint32_t end = state_.pass.count(x, y, half, wanted);
           for (uint32_t i = state_.pass.count(x, y, half, part); i < end; ++i)
-            render_sample(x, y, half, options_.adaptive && i < state_.pass.even_count(half), totals);
+            render_sample({x, y, half, i}, totals);
         }
     merge(totals);
   }
@@ -180,7 +184,6 @@ class Renderer {
   void save() {
     const double start = seconds();
     result().seconds = start;
-    std::sort(result().bad_sample_examples.begin(), result().bad_sample_examples.end());
     hooks_.save(state_);
     unsaved_ = false;
     const double duration = seconds() - start;
@@ -188,17 +191,38 @@ class Renderer {
     next_save_ = start + (hooks_.save_interval > 0 ? std::max(hooks_.save_interval, 20 * duration) : 0);
   }
 
-  void render_sample(int x, int y, int half, bool guides, Totals& totals) {
+  /// A sample of the pass under way, by its place in the crop and its number in the plan.
+  struct Planned {
+    int x, y, half;
+    uint32_t number;
+  };
+
+  void render_sample(const Planned& planned, Totals& totals) {
+    const auto [x, y, half, number] = planned;
+    const bool guides = number < state_.pass.guiding_count(half);
+    const uint32_t index = draw_index(planned, guides);
     const int full_x = crop_.x + x, full_y = crop_.y + y;
-    const uint32_t index = taken(x, y, half)++;
     CameraSample sample = camera_sample(camera_, options_.width, full_x, full_y, half, index, options_.seed);
     const Estimate estimate = integrator_.estimate(scene_, sample.ray, sample.sampler);
     ++totals.samples;
     totals.rays += estimate.rays;
-    if (!result().film.add(x, y, half, estimate.radiance))
-      totals.bad.push_back({full_x, full_y, half, index});
-    else if (guides)
+    if (!result().film.add(x, y, half, estimate.radiance)) {
+      ++totals.bad_samples;
+      if (totals.bad_sample_examples.size() >= 8 * kept_bad_samples) keep_few(totals.bad_sample_examples);
+      totals.bad_sample_examples.push_back({full_x, full_y, half, index});
+    } else if (guides && options_.adaptive) {
       state_.guides[size_t(half)].add(x, y, estimate.radiance);
+    }
+  }
+
+  /// Index of the next sample of its kind, which goes on even where the film rejects one.
+  uint32_t draw_index(const Planned& planned, bool guides) {
+    const auto [x, y, half, number] = planned;
+    if (guides) {
+      const uint32_t n = state_.drawn.guiding[size_t(half)] + number;
+      return options_.adaptive ? guiding_index(n) : n;
+    }
+    return extra_index(state_.drawn.extra[(size_t(y) * crop_.width + x) * Film::halves + size_t(half)]++);
   }
 
   void merge(const Totals& totals) {
@@ -206,13 +230,11 @@ class Renderer {
     unsaved_ = true;
     result().samples += totals.samples;
     result().rays += totals.rays;
-    result().bad_samples += totals.bad.size();
-    for (const auto& bad : totals.bad)
-      if (result().bad_sample_examples.size() < kept_bad_samples) result().bad_sample_examples.push_back(bad);
-    if (hooks_.observe && seconds() - reported_ >= report_interval) {
-      reported_ = seconds();
-      hooks_.observe(progress());
-    }
+    result().bad_samples += totals.bad_samples;
+    auto& examples = result().bad_sample_examples;
+    examples.insert(examples.end(), totals.bad_sample_examples.begin(), totals.bad_sample_examples.end());
+    keep_few(examples);
+    if (observer_.is_due(seconds())) observer_.post(progress());
   }
 
   RenderProgress progress() const {
@@ -246,12 +268,12 @@ class Renderer {
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   RenderState state_;
   const double seconds_before_;  ///< of rendering, by those who did what state_ began with
-  double reported_ = 0;
   double next_save_ = 0;
   double saving_ = 0;  ///< seconds taken by saves, in which nothing was rendered
   std::atomic<bool> unsaved_ = false;
   std::optional<StopReason> reason_;
   std::mutex mutex_;
+  ObserverThread observer_{hooks_.observe};
 };
 
 }  // namespace

@@ -35,7 +35,7 @@ struct RenderOptions {
   uint64_t seed = 0;
 };
 
-/// State after some tiles; handed to the observer a few times a second at most, never concurrently.
+/// State after some tiles; handed to the observer a few times a second at most, on a thread of its own.
 struct RenderProgress {
   double seconds = 0;
   double fraction = 0;  ///< of what was asked for, by the limit that is nearest; in [0, 1]
@@ -72,11 +72,13 @@ struct RenderResult {
   uint64_t samples = 0;
   RayCounts rays;
   uint64_t bad_samples = 0;                    ///< rejected by the film
-  std::vector<BadSample> bad_sample_examples;  ///< at most a few
+  std::vector<BadSample> bad_sample_examples;  ///< the first few by column, row, half and index
 };
 
 /// Who is told of a render on its way, and where it starts.
 struct RenderHooks {
+  /// Holds up nothing but the end of render(), which waits for it to return. Once it has thrown it is told no
+  /// more.
   std::function<void(const RenderProgress&)> observe = {};
   /// Gets the state after each `save_interval` seconds of rendering, but no sooner than after twenty times as
   /// long as the last save took (0: after every tile), and once at the end. Called on the thread that called

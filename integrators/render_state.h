@@ -19,14 +19,14 @@ struct RenderState {
   RenderState(int width, int height, bool adaptive)
       : so_far(Film(width, height)),
         guides{SampleGuide(adaptive ? width : 0, height), SampleGuide(adaptive ? width : 0, height)},
-        taken(size_t(width) * height * Film::halves) {}
+        drawn{{}, std::vector<uint32_t>(adaptive ? size_t(width) * height * Film::halves : 0)} {}
 
   int tile_columns() const { return (so_far.film.width() + tile_size - 1) / tile_size; }
   int tile_count() const { return tile_columns() * ((so_far.film.height() + tile_size - 1) / tile_size); }
 
   RenderResult so_far;                           ///< `reason` and `error` are not known yet
   std::array<SampleGuide, Film::halves> guides;  ///< empty without adaptive sampling
-  std::vector<uint32_t> taken;                   ///< samples drawn of each pixel and half
+  SamplesDrawn drawn;                            ///< which samples come next
   uint32_t done = 0;                             ///< samples a pixel of all complete passes
   uint32_t looked_at = 0;                        ///< `done` when the error was last looked at
   SamplePlan pass;                               ///< the one that is under way; of no samples: none is

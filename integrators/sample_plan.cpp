@@ -7,45 +7,40 @@
 namespace vernier {
 namespace {
 
+/// What SamplePlan::Numbers can hold.
+constexpr double most_countable = 65535;
+
 /// Samples of one half in a pass of `size` samples a pixel, by the other half's guide.
 class HalfPlan {
  public:
-  HalfPlan(const Film& film, int which, const SampleGuide& guide, uint32_t size)
-      : needs_(guide.needs()),
-        done_(needs_.size()),
-        fewest_(std::floor(size / 8.0)),
-        // At most eight times the even share, so that a plan made on little evidence does not spend
-        // everything.
-        most_(std::min(size * 4.0, 65535.0)) {
+  HalfPlan(const SamplesDrawn& drawn, int which, const SampleGuide& guide, uint32_t size)
+      : needs_(guide.needs()), done_(needs_.size()), budget_(size / 2.0 * double(needs_.size())) {
+    size_t needy = 0;
     for (size_t i = 0; i < done_.size(); ++i) {
-      done_[i] = film.samples(int(i % film.width()), int(i / film.width()), which);
+      done_[i] = drawn.guiding[size_t(which)] + drawn.extra[i * Film::halves + size_t(which)];
       done_sum_ += done_[i];
       need_sum_ += needs_[i];
+      needy += needs_[i] > 0;
     }
-  }
-
-  bool is_even() const { return !(need_sum_ > 0); }
-  /// What every pixel gets at least.
-  double fewest() const { return fewest_; }
-
-  /// Of a pass that every pixel in need could use as far as it may: where few are, the rest of a larger one
-  /// would have no place.
-  uint32_t largest_size() const {
-    double samples = 0;
-    for (const float need : needs_) samples += need > 0 ? most_ : fewest_;
-    return uint32_t(std::min(2 * samples / double(needs_.size()), 1e9));
+    const auto calm = double(needs_.size() - needy);
+    least_ = std::floor(size * SamplePlan::guiding_part / 2);
+    // At most eight times the even share, so that a plan made on little evidence does not spend everything;
+    // up to 64 times where so few pixels need samples that the rest would have no place.
+    const double all = needy > 0 ? (budget_ - calm * least_) / double(needy) : 0;
+    most_ = std::min(std::clamp(all, size * 4.0, size * 32.0), most_countable);
+    calm_ = calm > 0 ? std::max(least_, (budget_ - double(needy) * most_) / calm) : least_;
   }
 
   /// Sets this half's counts, on average half of `size`.
-  void fill(std::vector<uint16_t>& counts, int which, uint32_t size) const {
-    const double factor = find_factor(size / 2.0 * double(needs_.size()));
+  void fill(std::vector<uint16_t>& counts, int which) const {
+    const double factor = find_factor();
     // Fractions are carried along the row of pixels so that the total is met.
     double carried = 0;
     for (size_t i = 0; i < needs_.size(); ++i) {
-      carried += wanted(i, factor) - fewest_;
+      carried += wanted(i, factor) - least_;
       const double whole = std::floor(carried);
       carried -= whole;
-      counts[i * Film::halves + size_t(which)] = uint16_t(std::min(fewest_ + whole, 65535.0));
+      counts[i * Film::halves + size_t(which)] = uint16_t(std::min(least_ + whole, most_countable));
     }
   }
 
@@ -53,20 +48,20 @@ class HalfPlan {
   /// The best total of a pixel is in proportion to its need (Neyman allocation). Where that has been passed
   /// already, or the bounds bite, the samples go elsewhere, by way of the factor.
   double wanted(size_t i, double factor) const {
-    return std::clamp(factor * needs_[i] - done_[i], fewest_, most_);
+    return needs_[i] > 0 ? std::clamp(factor * needs_[i] - done_[i], least_, most_) : calm_;
   }
 
-  /// The factor that spends `budget`, to a thousandth. Steps in proportion find it in a few rounds, unless
+  /// The factor that spends the budget, to a thousandth. Steps in proportion find it in a few rounds, unless
   /// the need is that of few pixels; then it is bracketed and halved.
-  double find_factor(double budget) const {
-    double factor = (done_sum_ + budget) / need_sum_, below = 0, above = 0;
+  double find_factor() const {
+    double factor = (done_sum_ + budget_) / need_sum_, below = 0, above = 0;
     for (int round = 0; round < 200; ++round) {
       double spent = 0;
       for (size_t i = 0; i < needs_.size(); ++i) spent += wanted(i, factor);
-      if (std::abs(spent - budget) < 0.001 * budget) break;
-      (spent < budget ? below : above) = factor;
+      if (std::abs(spent - budget_) < 0.001 * budget_) break;
+      (spent < budget_ ? below : above) = factor;
       if (round < 20)
-        factor *= std::clamp(1 + (budget - spent) / (done_sum_ + budget), 0.5, 2.0);
+        factor *= std::clamp(1 + (budget_ - spent) / (done_sum_ + budget_), 0.5, 2.0);
       else
         factor = above > 0 ? (below + above) / 2 : 2 * factor;
     }
@@ -75,7 +70,9 @@ class HalfPlan {
 
   std::vector<float> needs_;
   std::vector<double> done_;  ///< samples that the half has
-  double fewest_, most_;
+  double budget_;             ///< samples to spend
+  double least_ = 0, most_ = 0;
+  double calm_ = 0;  ///< of a pixel that needs none
   double done_sum_ = 0, need_sum_ = 0;
 };
 
@@ -110,26 +107,23 @@ std::vector<float> SampleGuide::needs() const {
   return smooth;
 }
 
-SamplePlan SamplePlan::uniform(const Film& film, uint32_t size) {
+SamplePlan SamplePlan::uniform(const SamplesDrawn& drawn, uint32_t size) {
   Numbers plan;
-  plan.width = film.width();
   plan.size = size;
   // An odd sample goes to the half that has fewer.
-  plan.odd_half = film.samples(0, 0, 1) < film.samples(0, 0, 0) ? 1 : 0;
+  plan.odd_half = drawn.guiding[1] < drawn.guiding[0] ? 1 : 0;
   return SamplePlan(std::move(plan));
 }
 
-SamplePlan SamplePlan::adaptive(const Film& film, std::span<const SampleGuide, Film::halves> guides,
+SamplePlan SamplePlan::adaptive(const SamplesDrawn& drawn, std::span<const SampleGuide, Film::halves> guides,
                                 uint32_t size) {
-  const std::array<HalfPlan, Film::halves> halves{HalfPlan(film, 0, guides[1], size),
-                                                  HalfPlan(film, 1, guides[0], size)};
-  if (halves[0].is_even() || halves[1].is_even()) return uniform(film, size);
   Numbers plan;
-  plan.width = film.width();
-  plan.fewest = uint32_t(halves[0].fewest());
-  plan.size = std::min({size, halves[0].largest_size(), halves[1].largest_size()});
-  plan.counts.resize(size_t(film.width()) * film.height() * Film::halves);
-  for (int half = 0; half < Film::halves; ++half) halves[size_t(half)].fill(plan.counts, half, plan.size);
+  plan.width = guides[0].width();
+  plan.size = size;
+  plan.guiding = uint32_t(size * guiding_part / 2);
+  plan.counts.resize(drawn.extra.size());
+  for (int half = 0; half < Film::halves; ++half)
+    HalfPlan(drawn, half, guides[size_t(1 - half)], size).fill(plan.counts, half);
   return SamplePlan(std::move(plan));
 }
 

@@ -33,6 +33,11 @@ class LightTree {
     double prob = 0;  ///< 0: no light can reach the receiver
   };
   /// u in [0, 1). Lights down to a probability of 2^-40 are picked as often as `prob` says, to 2^-13 of it.
+  Pick sample(const LightReceiver& receiver, double u) const { return sample(receiver, weigh(receiver), u); }
+  double prob(const LightReceiver& receiver, uint32_t light) const {
+    return prob(receiver, weigh(receiver), light);
+  }
+  /// The same where the root has been weighed already.
   Pick sample(const LightReceiver& receiver, Weights root, double u) const;
   double prob(const LightReceiver& receiver, const Weights& root, uint32_t light) const;
 

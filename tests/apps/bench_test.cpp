@@ -89,6 +89,22 @@ TEST(BenchCalibration, ComparesReportedErrorsWithThoseAgainstAReference) {
   EXPECT_THAT(lonely.err, HasSubstr("--seeds"));
 }
 
+TEST(BenchBias, TellsTheBiasAndItsError) {
+  test::TemporaryFolder folder;
+  const std::string file = folder.file("b.json");
+  const auto result = test::run_vernier(
+      {"bench", "bias", "--pictures", "50", "--size", "8x8", "--spp", "32", "--json", file});
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("adaptive: bias"));
+  const auto report = json::parse(test::read_file(file));
+  for (const char* sampling : {"adaptive", "even"}) {
+    const auto& found = report[sampling];
+    EXPECT_EQ(found["pictures"], 50);
+    EXPECT_GT(found["standard_error"], 1e-3);
+    EXPECT_LT(std::abs(found["bias"].get<double>()), 6 * found["standard_error"].get<double>());
+  }
+}
+
 TEST(Bench, MisuseIsOneLineAndNothingIsWritten) {
   test::TemporaryFolder folder;
   const auto expect_error = [](const std::vector<std::string>& arguments, int code, const std::string& part) {
@@ -101,6 +117,7 @@ TEST(Bench, MisuseIsOneLineAndNothingIsWritten) {
   expect_error({"bench", "ray", cornell_box}, usage, "rays");
   expect_error({"bench", "stability", "--cases", "edge"}, usage, "edge-1");
   expect_error({"bench", "rays"}, usage, "which scene?");
+  expect_error({"bench", "bias", "--share", "0"}, usage, "--share");
   expect_error({"bench", "rays", cornell_box, "--accelerator", "bhv"}, usage, "bvh");
   expect_error({"bench", "rays", folder.file("none.glb"), "--json", folder.file("x.json")}, input,
                "none.glb");
