@@ -17,6 +17,9 @@ class LightSet {
   /// A light of no power is never chosen.
   LightSet(std::vector<std::unique_ptr<Light>> lights, const Bounds& scene);
 
+  /// Gives the lights back, in the order they came.
+  std::vector<std::unique_ptr<Light>> release() && { return std::move(lights_); }
+
   struct Choice {
     const Light* light = nullptr;
     float prob = 0;
