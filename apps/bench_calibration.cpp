@@ -73,13 +73,17 @@ ExitCode run_bench_calibration(const CalibrationFlags& flags, const Program& pro
   if (!flags.reference.empty()) given = read_reference_with_error(flags.reference);
   NoticeLog log(false);
   SceneDescription description = import_scene(flags.render.scene, flags.render.import);
-  surround(description, read_environment(flags.render));
+  const auto surroundings = read_surroundings(flags.render.surroundings);
+  replace_surroundings(description, surroundings, log);
   log.add(description.notices);
   const auto chosen = choose_camera(description.cameras, flags.render.camera, log);
-  const Scene scene(std::move(description), {});
-  log.add(scene.notices());
-  const CameraDescription view = chosen ? *chosen : fit_camera(scene.bounds(), {}, log);
+  Scene scene(std::move(description), {});
+  const CameraDescription view =
+      place_camera(chosen, flags.render.camera, scene.geometry(),
+                   bench_aspect(flags.render, given ? &given->picture : nullptr), log);
   RenderOptions options = bench_options(flags.render, view, given ? &given->picture : nullptr);
+  surround(scene, surroundings, view, options, log);
+  log.add(scene.notices());
   options.spp = flags.spp;
   if (!flags.render.error.empty()) {
     options.spp = 0;

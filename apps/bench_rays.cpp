@@ -9,6 +9,7 @@
 #include "apps/notice_log.h"
 #include "apps/ray_timing.h"
 #include "apps/scene_summary.h"
+#include "apps/surroundings.h"
 #include "core/base/parallel.h"
 #include "core/base/quantities.h"
 #include "core/base/text_file.h"
@@ -29,7 +30,8 @@ struct BenchRaysFlags {
   std::vector<std::string> accelerators{"all"};
   int paths = 200'000;
   int repetitions = 5;
-  std::string camera, json;
+  CameraFlags camera;
+  std::string json;
 };
 
 /// Median over the repetitions of how many times as fast as the yardstick, taken within each.
@@ -142,8 +144,11 @@ ExitCode run_bench_rays(const BenchRaysFlags& flags, const Program& program) {
   if (counts.triangles == 0)
     throw Error(ErrorKind::input, flags.scene, {}, "has no triangles to cast rays at");
   const auto chosen = choose_camera(description.cameras, flags.camera, log);
-  const Scene scene(std::move(description), {std::string(yardstick)});
-  const CameraDescription view = chosen ? *chosen : fit_camera(scene.bounds(), {}, log);
+  Scene scene(std::move(description), {std::string(yardstick)});
+  const CameraDescription view = place_camera(chosen, flags.camera, scene.geometry(), 0, log);
+  RenderOptions shape;
+  fill_in_size(shape, view);
+  surround(scene, std::nullopt, view, shape, log);
 
   constexpr int max_bounces = 4;
   const PathRays rays = record_path_rays(scene, view, static_cast<size_t>(flags.paths), max_bounces);
@@ -193,8 +198,7 @@ void register_bench_rays(CLI::App& bench, Program& program) {
       ->check(whole_number(1, 1000))
       ->type_name("N")
       ->capture_default_str();
-  command->add_option("--camera", flags->camera, "of the scene, by name or number (the first)")
-      ->type_name("NAME|N");
+  add_camera_flags(*command, flags->camera);
   command->add_option("--json", flags->json, "write the figures as JSON")->type_name("FILE");
   command->callback(
       [&program, flags] { program.run = [&program, flags] { return run_bench_rays(*flags, program); }; });

@@ -61,6 +61,11 @@ Reference render_reference(const Scene& scene, const Camera& camera, RenderOptio
            {"rel_rmse", result.error.rel_rmse}}};
 }
 
+float bench_aspect(const RenderFlags& flags, const Image* reference) {
+  if (flags.size.empty() && reference) return float(reference->width) / float(reference->height);
+  return asked_aspect(flags.size);
+}
+
 RenderOptions bench_options(const RenderFlags& flags, const CameraDescription& view, const Image* reference) {
   RenderOptions options;
   options.adaptive = flags.adaptive == "on";
@@ -89,10 +94,10 @@ void add_measured_picture_flags(CLI::App& command, RenderFlags& flags) {
   command.add_option("--size", flags.size, "of the picture (the reference's, else 256 pixels long)")
       ->check(parsed_by(parse_pixel_size))
       ->type_name("WxH");
-  add_camera_flag(command, flags);
+  add_camera_flags(command, flags.camera);
   add_adaptive_flag(command, flags);
   add_max_depth_flag(command, flags);
-  add_environment_flags(command, flags);
+  add_surroundings_flags(command, flags.surroundings);
 }
 
 }  // namespace vernier::apps

@@ -30,6 +30,9 @@ Reference read_reference(const std::string& file);
 Reference render_reference(const Scene& scene, const Camera& camera, RenderOptions options, int spp,
                            int max_depth);
 
+/// Width over height as asked for, else that of `reference` (may be null); 0: neither.
+float bench_aspect(const RenderFlags& flags, const Image* reference);
+
 /// Size as asked for, else that of `reference` (may be null), else small.
 RenderOptions bench_options(const RenderFlags& flags, const CameraDescription& view, const Image* reference);
 

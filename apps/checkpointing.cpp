@@ -55,11 +55,14 @@ RenderIdentity identity_of(const RenderRequest& request, const RenderReport& rep
   add("variant", flags.import.variant);
   add("animation", flags.import.animation);
   if (flags.import.time) add("at", fmt::format("{}", *flags.import.time));
-  if (const auto& environment = request.environment) {
-    const auto& pixels = environment->picture->values;
+  const Surroundings& surroundings = report.surroundings;
+  if (surroundings.environment) {
+    const auto& pixels = surroundings.environment->picture->values;
     add("env", fingerprint_of(pixels.data(), pixels.size()));
-    add("env-rotate", fmt::format("{}", flags.environment_rotate));
-    add("env-scale", fmt::format("{}", flags.environment_scale));
+    add("env-rotate", fmt::format("{}", flags.surroundings.rotate));
+    add("env-scale", fmt::format("{}", flags.surroundings.scale));
+  } else {
+    add("env", surroundings.name);
   }
   return identity;
 }

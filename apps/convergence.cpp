@@ -229,7 +229,8 @@ SceneConvergence measure_convergence(const ConvergencePlan& plan, size_t index, 
   const std::string& file = plan.scenes[index];
   auto start = Clock::now();
   SceneDescription description = import_scene(file, plan.render.import);
-  surround(description, read_environment(plan.render));
+  const auto surroundings = read_surroundings(plan.render.surroundings);
+  replace_surroundings(description, surroundings, log);
   const double load_seconds = seconds_since(start);
   log.add(description.notices);
   std::optional<Reference> given;
@@ -237,10 +238,13 @@ SceneConvergence measure_convergence(const ConvergencePlan& plan, size_t index, 
 
   std::vector<std::unique_ptr<Scene>> scenes;
   std::vector<Candidate> candidates = make_candidates(plan, description, scenes);
-  log.add(scenes.front()->notices());
   const auto chosen = choose_camera(description.cameras, plan.render.camera, log);
-  const CameraDescription view = chosen ? *chosen : fit_camera(scenes.front()->bounds(), {}, log);
+  const CameraDescription view =
+      place_camera(chosen, plan.render.camera, scenes.front()->geometry(),
+                   bench_aspect(plan.render, given ? &given->picture : nullptr), log);
   RenderOptions options = bench_options(plan.render, view, given ? &given->picture : nullptr);
+  for (const auto& scene : scenes) surround(*scene, surroundings, view, options, log);
+  log.add(scenes.front()->notices());
   const Camera camera(view, options.width, options.height);
   if (!given) fmt::print(stderr, "{}: reference of {} samples a pixel\n", file, plan.reference_spp);
   const Reference reference = given ? std::move(*given)

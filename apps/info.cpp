@@ -2,14 +2,16 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/choose_camera.h"
 #include "apps/commands.h"
 #include "apps/flags.h"
 #include "apps/messages.h"
 #include "apps/notice_log.h"
 #include "apps/scene_json.h"
 #include "apps/scene_summary.h"
+#include "apps/surroundings.h"
 #include "core/base/quantities.h"
-#include "scene/geometry.h"
+#include "scene/scene.h"
 
 namespace vernier::apps {
 namespace {
@@ -63,6 +65,11 @@ std::string bounds_text(const Bounds& bounds) {
                      bounds.upper.y, bounds.upper.z);
 }
 
+std::string surroundings_text(const std::string& name) {
+  if (name == "none") return "without surroundings";
+  return name == "scene" ? "in the scene's own environment" : fmt::format("with surroundings {}", name);
+}
+
 void print_text(const Json& scene, const SceneCounts& counts, const Bounds& bounds) {
   fmt::print("{}\n", one_line(scene["file"].get<std::string>()));
   fmt::print("hash       {}\n", scene["hash"].get<std::string>());
@@ -74,26 +81,43 @@ void print_text(const Json& scene, const SceneCounts& counts, const Bounds& boun
   fmt::print("textures   {}, {} decoded\n", counts.textures, format_bytes(double(counts.texture_bytes)));
   fmt::print("lights     {} punctual, {} emissive triangles\n", counts.punctual_lights,
              counts.emissive_triangles);
+  fmt::print("render     by camera {}, {}\n", one_line(scene["render"]["camera"].get<std::string>()),
+             surroundings_text(scene["render"]["surroundings"].get<std::string>()));
   print_list("cameras", scene["cameras"]);
   print_list("punctual lights", scene["punctual_lights"]);
   print_list("materials", scene["materials"], material_json(MaterialDescription{}));
   print_features(scene["features"]);
 }
 
+/// The camera and the surroundings that `vernier render` takes when it is told nothing.
+Json default_render_json(Scene& scene, std::span<const CameraDescription> cameras) {
+  NoticeLog unsaid(true);
+  const CameraFlags flags;
+  const CameraDescription view =
+      place_camera(choose_camera(cameras, flags, unsaid), flags, scene.geometry(), 0, unsaid);
+  RenderOptions options;
+  fill_in_size(options, view);
+  return {{"camera", view.name}, {"surroundings", surround(scene, std::nullopt, view, options, unsaid).name}};
+}
+
 ExitCode run_info(const InfoFlags& flags) {
   require_scene(flags.scene, "info");
-  SceneDescription scene = import_scene(flags.scene, flags.import);
-  const SceneCounts counts = count(scene);
-  const Bounds bounds = SceneGeometry(std::move(scene.meshes), scene.instances).bounds();
-  const Json json = scene_json(scene, counts, bounds);
+  SceneDescription description = import_scene(flags.scene, flags.import);
+  const SceneCounts counts = count(description);
+  Json json = scene_json(description, counts);
+  const auto cameras = description.cameras;
+  const auto notices = description.notices;
+  Scene scene(std::move(description), {});
+  json["bounds"] = bounds_json(scene.bounds());
+  json["render"] = default_render_json(scene, cameras);
   if (flags.json) {
     fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
     return ExitCode::done;
   }
-  print_text(json, counts, bounds);
+  print_text(json, counts, scene.bounds());
   NoticeLog log(false);
-  log.add(scene.notices);
-  for (const CameraDescription& camera : scene.cameras)
+  log.add(notices);
+  for (const CameraDescription& camera : cameras)
     if (!camera.defect.empty()) log.add({Notice::Severity::warning, {}, camera.defect});
   return ExitCode::done;
 }

@@ -1,12 +1,15 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <chrono>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "apps/checkpointing.h"
 #include "apps/choose_camera.h"
 #include "apps/commands.h"
 #include "apps/denoising.h"
+#include "apps/missing_text.h"
 #include "apps/notice_log.h"
 #include "apps/progress.h"
 #include "apps/render_options.h"
@@ -18,6 +21,7 @@
 #include "core/base/text_file.h"
 #include "core/image/display.h"
 #include "core/image/image_io.h"
+#include "integrators/visible_light.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
@@ -54,6 +58,24 @@ void warn_of_bad_samples(const RenderResult& result, const RenderFlags& flags, N
                        result.bad_samples, result.samples, replay)});
 }
 
+/// raycast's pictures are data; surroundings play no part in them.
+bool shows_light(const RenderFlags& flags) { return flags.integrator != "raycast"; }
+
+/// Says so when what the camera sees of the scene comes out all but black, and what helps.
+void warn_if_black(double mean, const RenderFlags& flags, const RenderReport& report, NoticeLog& log) {
+  constexpr double black = 0.005, grey = 0.18;
+  if (mean * std::exp2(flags.display.exposure) >= black) return;
+  std::vector<std::string> remedies;
+  if (report.surroundings.name != "studio") remedies.emplace_back("--env studio lights it");
+  if (mean > 0)
+    remedies.push_back(
+        fmt::format("--exposure {:.0f} brightens a .png or .jpg", std::ceil(std::log2(grey / mean))));
+  log.add({Notice::Severity::warning,
+           {},
+           fmt::format("the picture is almost all black, its mean luminance {:.2g}{}{}", mean,
+                       remedies.empty() ? "" : "; ", fmt::join(remedies, ", "))});
+}
+
 /// File names and arguments need not be UTF-8, which JSON is.
 std::string to_text(const nlohmann::ordered_json& json) {
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
@@ -84,10 +106,10 @@ void write_pictures(const RenderRequest& request, const LayeredImage& picture, c
 }
 
 /// The scene to render, and what the report says of it.
-SceneDescription load_scene(const RenderRequest& request, RenderReport& report) {
+SceneDescription load_scene(const RenderRequest& request, RenderReport& report, NoticeLog& log) {
   const RenderFlags& flags = request.flags;
   SceneDescription description = import_scene(flags.scene, flags.import);
-  surround(description, request.environment);
+  replace_surroundings(description, request.surroundings, log);
   report.scene_file = flags.scene;
   report.scene_hash = description.hash;
   report.counts = count(description);
@@ -124,25 +146,31 @@ ExitCode run_render(const RenderFlags& flags, const std::string& command_line) {
   report.command_line = command_line;
   report.threads = thread_count();
   report.options = request.options;
-  SceneDescription description = load_scene(request, report);
+  SceneDescription description = load_scene(request, report, log);
   log.add(description.notices);
   const auto chosen = choose_camera(description.cameras, flags.camera, log);
   report.load_seconds = watch.lap();
-  const Scene scene(std::move(description), {flags.accelerator});
-  log.add(scene.notices());
+  Scene scene(std::move(description), {flags.accelerator});
   report.accelerator_stats = scene.accelerator().stats();
   report.build_seconds = watch.lap();
 
-  const CameraDescription view = chosen ? *chosen : fit_camera(scene.bounds(), report.options, log);
+  const CameraDescription view =
+      place_camera(chosen, flags.camera, scene.geometry(), asked_aspect(flags.size), log);
   report.camera = view.name;
   fill_in_size(report.options, view);
   check_picture_size(report.options, request.layers);
+  if (shows_light(flags))
+    report.surroundings = surround(scene, request.surroundings, view, report.options, log);
+  log.add(scene.notices());
   const Camera camera(view, report.options.width, report.options.height);
   RenderHooks hooks = checkpointing.hooks(request, report, view);
   if (flags.verbose) fmt::print(stderr, "{}", scene_lines(report));
 
   const RenderResult result = trace(scene, camera, request, report, std::move(hooks));
   warn_of_bad_samples(result, flags, log);
+  warn_of_missing_light(result, flags.integrator_options.max_depth, log);
+  if (shows_light(flags))
+    warn_if_black(covered_luminance(result.film, scene, camera, report.options), flags, report, log);
 
   watch.lap();
   LayeredImage picture = with_layers(result.film, request.layers, scene, camera, report.options);

@@ -44,7 +44,6 @@ void add_quality_flags(CLI::App& command, RenderFlags& flags) {
   command.add_option("--crop", flags.crop, "render only this part")
       ->check(parsed_by(parse_pixel_rect))
       ->type_name("WxH+X+Y");
-  add_camera_flag(command, flags);
   command.add_option("--seed", flags.seed, "of the random numbers")
       ->check(parsed_by(parse_seed))
       ->type_name("N")
@@ -70,7 +69,7 @@ void add_integrator_flags(CLI::App& command, RenderFlags& flags) {
       ->capture_default_str();
   command.add_option("--accelerator", flags.accelerator, "ray query structure; 'help' lists them")
       ->type_name("NAME");
-  add_environment_flags(command, flags);
+  add_surroundings_flags(command, flags.surroundings);
 }
 
 void add_output_flags(CLI::App& command, RenderFlags& flags) {
@@ -117,11 +116,6 @@ void print_layers() {
 
 }  // namespace
 
-void add_camera_flag(CLI::App& command, RenderFlags& flags) {
-  command.add_option("--camera", flags.camera, "of the scene, by name or number (the first)")
-      ->type_name("NAME|N");
-}
-
 void add_adaptive_flag(CLI::App& command, RenderFlags& flags) {
   command
       .add_option("--adaptive", flags.adaptive, "spend samples where they lower the picture's error: on, off")
@@ -137,17 +131,6 @@ void add_max_depth_flag(CLI::App& command, RenderFlags& flags) {
       ->capture_default_str();
 }
 
-void add_environment_flags(CLI::App& command, RenderFlags& flags) {
-  command.add_option("--env", flags.environment, "latitude-longitude picture of the surroundings (HDR, EXR)")
-      ->type_name("FILE");
-  command.add_option("--env-rotate", flags.environment_rotate, "degrees counter-clockwise seen from above")
-      ->check(real_number(-1e6, 1e6))
-      ->type_name("DEG");
-  command.add_option("--env-scale", flags.environment_scale, "multiplies its radiance")
-      ->check(real_number(0, 1e30))
-      ->type_name("S");
-}
-
 void add_render_flags(CLI::App& command, RenderFlags& flags) {
   command
       .add_option("-o,--output", flags.outputs,
@@ -156,6 +139,7 @@ void add_render_flags(CLI::App& command, RenderFlags& flags) {
       ->allow_extra_args(false);
   add_scene_flags(command, flags.scene, flags.import);
   add_quality_flags(command, flags);
+  add_camera_flags(command, flags.camera);
   add_integrator_flags(command, flags);
   add_output_flags(command, flags);
 }

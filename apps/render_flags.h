@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/camera_flags.h"
 #include "apps/commands.h"
+#include "apps/surroundings.h"
 #include "core/image/display.h"
 #include "integrators/integrator.h"
 #include "scene/import/import.h"
@@ -28,10 +30,8 @@ struct RenderFlags {
   uint64_t seed = 0;
   unsigned threads = 0;
 
-  std::string camera;
-  std::string environment;
-  float environment_rotate = 0;  ///< degrees
-  float environment_scale = 1;
+  CameraFlags camera;
+  SurroundingsFlags surroundings;
 
   std::string layers;   ///< --aov; empty: none
   std::string denoise;  ///< filter; empty: none
@@ -46,12 +46,9 @@ struct RenderFlags {
 /// Declares the flags on `command`.
 void add_render_flags(CLI::App& command, RenderFlags& flags);
 
-/// Parts of them, for other commands: which camera, how samples are spread, how long paths are, and what
-/// surrounds the scene.
-void add_camera_flag(CLI::App& command, RenderFlags& flags);
+/// Parts of them, for other commands: how samples are spread and how long paths are.
 void add_adaptive_flag(CLI::App& command, RenderFlags& flags);
 void add_max_depth_flag(CLI::App& command, RenderFlags& flags);
-void add_environment_flags(CLI::App& command, RenderFlags& flags);
 
 /// Prints the list that a flag given as "help" asks for; false when none was.
 bool print_requested_list(const RenderFlags& flags);

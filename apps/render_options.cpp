@@ -95,8 +95,7 @@ DisplayOptions choose_display(const RenderFlags& flags) {
   if (!needed && std::none_of(flags.outputs.begin(), flags.outputs.end(), is_display_file)) return display;
   const std::vector<std::string> views = display_views(display);
   if (!display.view.empty()) {
-    if (std::find(views.begin(), views.end(), display.view) == views.end())
-      throw_unknown_name("view", display.view, views);
+    display.view = find_by_prefix("view", display.view, views);
     return display;
   }
   display.view = views.front();
@@ -110,33 +109,12 @@ DisplayOptions choose_display(const RenderFlags& flags) {
 void require_separate_outputs(const RenderFlags& flags) {
   std::vector<std::string> written = flags.outputs;
   written.insert(written.end(), {flags.stats, flags.report, flags.checkpoint});
-  std::vector<std::string> read{flags.scene, flags.environment, flags.display.config};
+  std::vector<std::string> read{flags.scene, flags.surroundings.environment, flags.display.config};
   if (flags.resume != flags.checkpoint) read.push_back(flags.resume);
   require_separate_files(read, written);
 }
 
 }  // namespace
-
-std::shared_ptr<const EnvironmentDescription> read_environment(const RenderFlags& flags) {
-  if (flags.environment.empty()) {
-    if (flags.environment_rotate != 0 || flags.environment_scale != 1)
-      throw Error(ErrorKind::usage, "--env-rotate and --env-scale need --env FILE");
-    return nullptr;
-  }
-  auto environment = std::make_shared<EnvironmentDescription>();
-  environment->picture = std::make_shared<const Image>(read_image(flags.environment));
-  environment->rotation = std::remainder(flags.environment_rotate, 360.0f) * pi / 180;
-  environment->scale = flags.environment_scale;
-  return environment;
-}
-
-void surround(SceneDescription& scene, std::shared_ptr<const EnvironmentDescription> environment) {
-  if (!environment) return;
-  if (scene.environment)
-    scene.notices.push_back(
-        {Notice::Severity::info, "", "--env is used instead of the file's own environment"});
-  scene.environment = std::move(environment);
-}
 
 void check_picture_size(const RenderOptions& options, std::span<const Layer> layers) {
   const Crop& crop = options.crop;
@@ -174,7 +152,7 @@ RenderRequest check_render_flags(const RenderFlags& flags) {
   for (const auto& path : flags.outputs) check_writable_image(path);
   for (const auto& path : {flags.stats, flags.report})
     if (!path.empty()) check_writable_text_file(path);
-  request.environment = read_environment(flags);
+  request.surroundings = read_surroundings(flags.surroundings);
   return request;
 }
 

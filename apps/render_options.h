@@ -26,16 +26,10 @@ struct RenderRequest {
   std::vector<Layer> layers;
   const Denoiser* denoiser = nullptr;  ///< null: none
   DisplayOptions display;
-  std::shared_ptr<const EnvironmentDescription> environment;  ///< null: the scene's own
+  std::optional<Surroundings> surroundings;  ///< none: left to the scene
 };
 
-/// Null: the scene's own. Throws Error.
-std::shared_ptr<const EnvironmentDescription> read_environment(const RenderFlags& flags);
-
-/// Puts surroundings, if any, in place of the scene's own, and notes if it had some.
-void surround(SceneDescription& scene, std::shared_ptr<const EnvironmentDescription> environment);
-
-/// Checks names, sizes, outputs and reads the environment. Throws Error.
+/// Checks names, sizes, outputs and reads the surroundings. Throws Error.
 RenderRequest check_render_flags(const RenderFlags& flags);
 
 /// Whether the crop lies in the picture, and the picture with its layers in memory. Throws Error(usage) or

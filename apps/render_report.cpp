@@ -8,6 +8,7 @@
 
 #include "apps/machine.h"
 #include "apps/messages.h"
+#include "apps/missing_text.h"
 #include "core/base/quantities.h"
 
 namespace vernier::apps {
@@ -47,6 +48,7 @@ Json picture_json(const RenderReport& report, const RenderFlags& flags, const Re
                   {"height", report.options.height},
                   {"integrator", flags.integrator},
                   {"camera", report.camera},
+                  {"surroundings", report.surroundings.name},
                   {"seed", flags.seed},
                   {"max_depth", flags.integrator_options.max_depth},
                   {"samples", result.samples},
@@ -100,7 +102,10 @@ Json bad_samples_json(const RenderResult& result) {
 std::string shortfall(const RenderReport& report, const RenderResult& result) {
   if (result.reason == StopReason::interrupted) return "; interrupted";
   const double asked = report.options.target_error;
-  if (asked == 0 || result.error.rel_rmse <= asked) return "";
+  if (asked == 0) return "";
+  if (exceeds(result.missing, asked))
+    return fmt::format("; the error of {:.3g} % is not reached, for more than that is missing", 100 * asked);
+  if (result.error.rel_rmse <= asked) return "";
   return fmt::format("; {} before the error of {:.3g} %",
                      result.reason == StopReason::time ? "time was up" : "all samples were taken",
                      100 * asked);
@@ -134,6 +139,8 @@ Metadata result_metadata(const RenderResult& result) {
     metadata["vernier:relRmse95"] = fmt::format("{:.6g} {:.6g}", result.error.low, result.error.high);
     metadata["vernier:unreliablePixels"] = fmt::format("{:.6g}", result.error.unreliable);
   }
+  metadata["vernier:missingBentLight"] = fmt::format("{:.6g}", result.missing.bent.share);
+  metadata["vernier:missingBeyondDepth"] = fmt::format("{:.6g}", result.missing.depth.share);
   return metadata;
 }
 
@@ -143,6 +150,7 @@ Metadata image_metadata(const RenderReport& report, const RenderFlags& flags, co
       {"vernier:scene", report.scene_file},
       {"vernier:sceneHash", report.scene_hash},
       {"vernier:camera", report.camera},
+      {"vernier:surroundings", report.surroundings.name},
       {"vernier:integrator", flags.integrator},
       {"vernier:accelerator", report.accelerator},
       {"vernier:seed", fmt::format("{}", flags.seed)},
@@ -170,6 +178,7 @@ Json stats_json(const RenderReport& report, const RenderFlags& flags, const Rend
           {"rays", rays_json(result)},
           {"profile", profile_json(report)},
           {"error", error_json(result.error)},
+          {"missing", missing_json(result.missing)},
           {"convergence", convergence_json(result)},
           {"accelerator",
            {{"name", report.accelerator},
@@ -201,7 +210,8 @@ std::string scene_lines(const RenderReport& report) {
 std::string summary_line(const RenderReport& report, const RenderFlags& flags, const RenderResult& result) {
   return fmt::format("wrote {}: {}x{}, {:.4g} spp{}, load {}, build {}, render {}, {} rays/s{}",
                      fmt::join(flags.outputs, ", "), result.film.width(), result.film.height(),
-                     samples_per_pixel(result), error_text(result.error), format_seconds(report.load_seconds),
+                     samples_per_pixel(result), error_text(result.error) + missing_text(result.missing),
+                     format_seconds(report.load_seconds),
                      format_seconds(report.build_seconds), format_seconds(result.seconds),
                      format_count(rate(total(result.rays), result.seconds)), shortfall(report, result));
 }

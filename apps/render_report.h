@@ -17,6 +17,7 @@ namespace vernier::apps {
 struct RenderReport {
   std::string command_line;
   std::string scene_file, scene_hash, camera, accelerator;
+  Surroundings surroundings{"none", nullptr};
   SceneCounts counts;
   AcceleratorStats accelerator_stats;
   RenderOptions options;

@@ -85,11 +85,17 @@ Json number_json(double value) {
   return std::isfinite(value) ? Json::parse(fmt::format("{}", static_cast<float>(value))) : Json(nullptr);
 }
 
-Json scene_json(const SceneDescription& scene, const SceneCounts& counts, const Bounds& bounds) {
-  Json json = {
-      {"file", scene.source}, {"hash", scene.hash}, {"counts", to_json(counts)}, {"bounds", nullptr}};
-  if (!bounds.empty())
-    json["bounds"] = {{"lower", vector_json(bounds.lower)}, {"upper", vector_json(bounds.upper)}};
+Json bounds_json(const Bounds& bounds) {
+  if (bounds.empty()) return nullptr;
+  return {{"lower", vector_json(bounds.lower)}, {"upper", vector_json(bounds.upper)}};
+}
+
+Json scene_json(const SceneDescription& scene, const SceneCounts& counts) {
+  Json json = {{"file", scene.source},
+               {"hash", scene.hash},
+               {"counts", to_json(counts)},
+               {"bounds", nullptr},
+               {"render", nullptr}};
   json["cameras"] = list_json(scene.cameras, camera_json);
   json["punctual_lights"] = list_json(scene.lights, light_json);
   json["materials"] = list_json(scene.materials, material_json);

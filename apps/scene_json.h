@@ -21,7 +21,10 @@ nlohmann::ordered_json vector_json(const Vector& v) {
 nlohmann::ordered_json material_json(const MaterialDescription& material);
 
 /// Everything that `vernier info` says of a scene (README.md, "What a scene holds").
-nlohmann::ordered_json scene_json(const SceneDescription& scene, const SceneCounts& counts,
-                                  const Bounds& bounds);
+/// but for `bounds` and `render`, which are null.
+nlohmann::ordered_json scene_json(const SceneDescription& scene, const SceneCounts& counts);
+
+/// Null where they are empty.
+nlohmann::ordered_json bounds_json(const Bounds& bounds);
 
 }  // namespace vernier::apps

@@ -57,6 +57,7 @@ void for_each_array(State& state, Plan& plan_counts, const Visit& visit) {
   visit("guide 1", state.guides[0].bytes());
   visit("guide 2", state.guides[1].bytes());
   visit("extra", bytes_of(state.drawn.extra));
+  visit("light", bytes_of(state.light));
   visit("plan", bytes_of(plan_counts));
   visit("parts", bytes_of(state.parts));
   visit("looks", bytes_of(state.so_far.convergence));
@@ -171,10 +172,10 @@ void read_state(Reader& reader, const Json& header, Checkpoint& checkpoint) {
   const auto count = [&](size_t array, size_t element) {
     return arrays.at(array).at("bytes").get<uint64_t>() / element;
   };
-  if (count(4, sizeof(uint16_t)) > 0) pass.counts.resize(state.drawn.extra.size());
+  if (count(5, sizeof(uint16_t)) > 0) pass.counts.resize(state.drawn.extra.size());
   if (pass.size > 0) state.parts.resize(size_t(state.tile_count()));
-  so_far.convergence.resize(count(6, sizeof(RenderResult::Look)));
-  so_far.bad_sample_examples.resize(count(7, sizeof(BadSample)));
+  so_far.convergence.resize(count(7, sizeof(RenderResult::Look)));
+  so_far.bad_sample_examples.resize(count(8, sizeof(BadSample)));
 
   size_t i = 0;
   for_each_array(state, pass.counts, [&](const char* name, std::span<std::byte> array) {

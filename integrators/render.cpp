@@ -69,6 +69,7 @@ class Renderer {
   struct Totals {
     uint64_t samples = 0;
     RayCounts rays;
+    TileLight light;
     uint64_t bad_samples = 0;
     std::vector<BadSample> bad_sample_examples;
   };
@@ -143,6 +144,7 @@ class Renderer {
     result().error = looked ? looks.back().error : estimate_error(result().film);
     if (!looked && state_.done >= pilot)
       result().convergence.push_back({seconds(), samples_per_pixel(), result().error});
+    result().missing = estimate_missing(state_.light);
     result().seconds = seconds();
     return std::move(result());
   }
@@ -174,6 +176,7 @@ class Renderer {
           for (uint32_t i = state_.pass.count(x, y, half, part); i < end; ++i)
             render_sample({x, y, half, i}, totals);
         }
+    state_.light[size_t(tile)] += totals.light;
     merge(totals);
   }
 
@@ -210,8 +213,9 @@ class Renderer {
       ++totals.bad_samples;
       if (totals.bad_sample_examples.size() >= 8 * kept_bad_samples) keep_few(totals.bad_sample_examples);
       totals.bad_sample_examples.push_back({full_x, full_y, half, index});
-    } else if (guides && options_.adaptive) {
-      state_.guides[size_t(half)].add(x, y, estimate.radiance);
+    } else if (guides) {
+      totals.light.add(estimate);
+      if (options_.adaptive) state_.guides[size_t(half)].add(x, y, estimate.radiance);
     }
   }
 

@@ -11,6 +11,7 @@
 #include "core/image/error_estimate.h"
 #include "core/image/film.h"
 #include "integrators/integrator.h"
+#include "integrators/missing_light.h"
 
 namespace vernier {
 
@@ -71,6 +72,7 @@ struct RenderResult {
   double seconds = 0;
   uint64_t samples = 0;
   RayCounts rays;
+  MissingEstimate missing;  ///< known bias, which `error` does not contain
   uint64_t bad_samples = 0;                    ///< rejected by the film
   std::vector<BadSample> bad_sample_examples;  ///< the first few by column, row, half and index
 };

@@ -19,7 +19,8 @@ struct RenderState {
   RenderState(int width, int height, bool adaptive)
       : so_far(Film(width, height)),
         guides{SampleGuide(adaptive ? width : 0, height), SampleGuide(adaptive ? width : 0, height)},
-        drawn{{}, std::vector<uint32_t>(adaptive ? size_t(width) * height * Film::halves : 0)} {}
+        drawn{{}, std::vector<uint32_t>(adaptive ? size_t(width) * height * Film::halves : 0)},
+        light(size_t(tile_count())) {}
 
   int tile_columns() const { return (so_far.film.width() + tile_size - 1) / tile_size; }
   int tile_count() const { return tile_columns() * ((so_far.film.height() + tile_size - 1) / tile_size); }
@@ -27,6 +28,7 @@ struct RenderState {
   RenderResult so_far;                           ///< `reason` and `error` are not known yet
   std::array<SampleGuide, Film::halves> guides;  ///< empty without adaptive sampling
   SamplesDrawn drawn;                            ///< which samples come next
+  std::vector<TileLight> light;                  ///< by tile, of the samples that all pixels get alike
   uint32_t done = 0;                             ///< samples a pixel of all complete passes
   uint32_t looked_at = 0;                        ///< `done` when the error was last looked at
   SamplePlan pass;                               ///< the one that is under way; of no samples: none is

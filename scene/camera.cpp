@@ -35,19 +35,4 @@ std::optional<Vec2f> Camera::project(const Vec3f& world) const {
   return Vec2f((x + 1) / 2 * width_, (1 - y) / 2 * height_);
 }
 
-CameraDescription fitted_camera(const Bounds& bounds, float aspect) {
-  CameraDescription camera;
-  camera.name = "fitted";
-  camera.yfov = 40 * pi / 180;
-  // From the front right and a little above, as product pictures are taken: the sphere about the box fills
-  // the view.
-  const float half_angle = std::atan(std::tan(camera.yfov / 2) * std::min(1.f, aspect));
-  const float radius = std::max(bounds.radius(), 1e-6f);
-  const Vec3f center = bounds.empty() ? Vec3f(0, 0, 0) : bounds.center();
-  const Vec3f back = normalize(Vec3f(0.5f, 0.35f, 1));
-  const Vec3f right = normalize(cross(Vec3f(0, 1, 0), back));
-  camera.to_world = {right, cross(back, right), back, center + back * (radius / std::sin(half_angle))};
-  return camera;
-}
-
 }  // namespace vernier

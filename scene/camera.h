@@ -3,7 +3,6 @@
 #include <optional>
 
 #include "core/math/ray.h"
-#include "scene/bounds.h"
 #include "scene/description.h"
 
 namespace vernier {
@@ -27,8 +26,5 @@ class Camera {
   Vec2f half_extent_;                 ///< of the image plane: at unit distance, or in metres for orthographic
   float width_, height_;
 };
-
-/// Camera that sees the whole box, for a picture of that width over height: used when a scene has none.
-CameraDescription fitted_camera(const Bounds& bounds, float aspect);
 
 }  // namespace vernier

@@ -21,22 +21,6 @@ Notice open_volumes(std::span<const InstanceDescription> instances, const std::v
           text + " is not closed, so it has no inside: its surface is taken for thin-walled"};
 }
 
-/// What a scene without any light is shown under: a soft sky, radiance 1 overhead falling to 0.6 at the
-/// horizon and 0.3 below it, so that shapes read and a white diffuse surface facing up shows close to 1.
-std::shared_ptr<const EnvironmentDescription> default_sky() {
-  constexpr int width = 2, height = 64;
-  auto picture = std::make_shared<Image>(width, height, 3);
-  for (int y = 0; y < height; ++y) {
-    const float up = std::cos(pi * (float(y) + 0.5f) / height);
-    const float value = up > 0 ? 0.6f + 0.4f * up : 0.3f;
-    for (int x = 0; x < width; ++x)
-      for (int c = 0; c < 3; ++c) picture->pixel(x, y)[c] = value;
-  }
-  auto sky = std::make_shared<EnvironmentDescription>();
-  sky->picture = std::move(picture);
-  return sky;
-}
-
 }  // namespace
 
 Scene::Scene(SceneDescription description, const Options& options)
@@ -121,23 +105,26 @@ void Scene::collect_lights(const SceneDescription& description) {
     auto light = std::make_unique<PunctualLight>(punctual);
     if (light->power(bounds()) > 0) add(std::move(light));
   }
-  auto sky = description.environment;
-  if (!sky && lights.empty()) {
-    sky = default_sky();
+  if (description.environment) add_environment(description.environment, lights);
+  lights_ = LightSet(std::move(lights));
+}
+
+void Scene::add_environment(std::shared_ptr<const EnvironmentDescription> description,
+                            std::vector<std::unique_ptr<Light>>& lights) {
+  auto light = std::make_unique<EnvironmentLight>(std::move(description));
+  if (light->bad_texels() > 0)
     notices_.push_back(
-        {Notice::Severity::info, "",
-         "the scene has no light: using the default sky (radiance 1 overhead, 0.6 at the horizon, 0.3 "
-         "from below); --env FILE sets another"});
-  }
-  if (sky) {
-    auto light = std::make_unique<EnvironmentLight>(sky);
-    if (light->bad_texels() > 0)
-      notices_.push_back(
-          {Notice::Severity::warning, "environment",
-           std::to_string(light->bad_texels()) + " values are negative or not finite; taken as black"});
-    environment_ = light.get();
-    environment_index_ = add(std::move(light));
-  }
+        {Notice::Severity::warning, "environment",
+         std::to_string(light->bad_texels()) + " values are negative or not finite; taken as black"});
+  environment_ = light.get();
+  environment_index_ = int32_t(lights.size());
+  lights.push_back(std::move(light));
+}
+
+void Scene::surround(std::shared_ptr<const EnvironmentDescription> description) {
+  auto lights = std::move(lights_).release();
+  if (environment_) lights.pop_back();  // it is always the last
+  add_environment(std::move(description), lights);
   lights_ = LightSet(std::move(lights));
 }
 

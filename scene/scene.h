@@ -15,19 +15,23 @@
 
 namespace vernier {
 
-/// Everything that rays can meet and light can come from. Immutable once built; all members may be called
-/// from many threads.
+/// Everything that rays can meet and light can come from. Immutable once built and surrounded; all const
+/// members may be called from many threads.
 class Scene {
  public:
   struct Options {
     std::string accelerator;  ///< name in accelerators(); empty: the default
   };
 
-  /// Takes the description's arrays over. A description with no light of any kind gets a default sky and a
-  /// notice.
+  /// Takes the description's arrays over.
   Scene(SceneDescription description, const Options& options);
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
+
+  /// Puts an environment around the scene, in place of the one it has, if any. The one change that a scene
+  /// takes, and not while other threads use it: what surroundings it needs is told by looking at it.
+  void surround(std::shared_ptr<const EnvironmentDescription> description);
+  bool has_environment() const { return environment_ != nullptr; }
 
   /// The first triangle along a ray, whatever it is made of. What light meets: scene/segment.h.
   std::optional<SurfacePoint> intersect(const Ray& ray) const;
@@ -66,6 +70,8 @@ class Scene {
   LightReceiver receiver(const SurfacePoint& point) const;
   void compile_materials(const SceneDescription& description);
   void collect_lights(const SceneDescription& description);
+  void add_environment(std::shared_ptr<const EnvironmentDescription> description,
+                       std::vector<std::unique_ptr<Light>>& lights);
 
   SceneGeometry geometry_;
   std::vector<Texture> textures_;

@@ -23,6 +23,13 @@ size_t levenshtein(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+char lower(char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; }
+
+bool begins_with(std::string_view text, std::string_view prefix) {
+  return text.size() >= prefix.size() && std::equal(prefix.begin(), prefix.end(), text.begin(),
+                                                    [](char a, char b) { return lower(a) == lower(b); });
+}
+
 }  // namespace
 
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates) {
@@ -54,6 +61,25 @@ std::string unknown_name_message(std::string_view kind, std::string_view name,
 void throw_unknown_name(std::string_view kind, std::string_view name,
                         std::span<const std::string> candidates) {
   throw Error(ErrorKind::usage, unknown_name_message(kind, name, candidates));
+}
+
+const std::string& find_by_prefix(std::string_view kind, std::string_view name,
+                                  std::span<const std::string> candidates) {
+  // What was typed in full, then with other capitals, then in part.
+  if (const auto same = std::find(candidates.begin(), candidates.end(), name); same != candidates.end())
+    return *same;
+  std::vector<const std::string*> matches;
+  std::string names;
+  for (const auto& candidate : candidates) {
+    if (!begins_with(candidate, name)) continue;
+    if (candidate.size() == name.size()) return candidate;
+    matches.push_back(&candidate);
+    names += (names.empty() ? "" : ", ") + candidate;
+  }
+  if (name.empty() || matches.empty()) throw_unknown_name(kind, name, candidates);
+  if (matches.size() > 1)
+    throw Error(ErrorKind::usage, std::string(kind) + " '" + std::string(name) + "' may be any of " + names);
+  return *matches.front();
 }
 
 }  // namespace vernier

@@ -19,6 +19,11 @@ std::string unknown_name_message(std::string_view kind, std::string_view name,
 [[noreturn]] void throw_unknown_name(std::string_view kind, std::string_view name,
                                      std::span<const std::string> candidates);
 
+/// The candidate that `name` is, or is the beginning of, without regard to case. Throws Error(usage), listing
+/// what there is, when there is none or more than one.
+const std::string& find_by_prefix(std::string_view kind, std::string_view name,
+                                  std::span<const std::string> candidates);
+
 /// The entry of a registry table called `name` (entries have a member `name`); throws Error(usage) listing
 /// the names there are.
 template <typename Table>

@@ -102,6 +102,28 @@ double parse_fraction(std::string_view text) {
   return part;
 }
 
+float parse_margin(std::string_view text) {
+  std::string_view rest = text;
+  const auto number = take_number<double>(rest);
+  const double part = number.value_or(1) * (take(rest, '%') ? 0.01 : 1);
+  if (!rest.empty() || part > 0.45) refuse(text, "a part of the picture from 0 to 45 %, such as 8%");
+  return float(part);
+}
+
+std::array<float, 3> parse_point(std::string_view text) {
+  std::array<float, 3> point{};
+  std::string_view rest = text;
+  for (size_t i = 0; i < point.size(); ++i) {
+    const bool negative = take(rest, '-');
+    const auto number = take_number<float>(rest);
+    const bool separated = i + 1 < point.size() ? take(rest, ',') : rest.empty();
+    if (!number || !std::isfinite(*number) || !separated)
+      refuse(text, "three numbers separated by commas, such as 1.5,0,-2");
+    point[i] = negative ? -*number : *number;
+  }
+  return point;
+}
+
 PixelSize parse_pixel_size(std::string_view text) {
   std::string_view rest = text;
   const auto size = take_size(rest);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 
@@ -22,6 +23,12 @@ double parse_seconds(std::string_view text);
 
 /// A part of the whole, above 0 and below 1, from "1%", "0.5 %" or "0.01".
 double parse_fraction(std::string_view text);
+
+/// A part of a picture's side, from 0 to 45 %: "8%", "0.08", "0".
+float parse_margin(std::string_view text);
+
+/// Three finite numbers: "1.5,0,-2".
+std::array<float, 3> parse_point(std::string_view text);
 
 /// "1280x720"; both at least 1 and at most 65536.
 PixelSize parse_pixel_size(std::string_view text);

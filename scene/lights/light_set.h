@@ -18,6 +18,9 @@ class LightSet {
   /// A light of no power is never chosen.
   explicit LightSet(std::vector<std::unique_ptr<Light>> lights);
 
+  /// Gives the lights back, in the order they came.
+  std::vector<std::unique_ptr<Light>> release() && { return std::move(lights_); }
+
   struct Choice {
     const Light* light = nullptr;
     float prob = 0;

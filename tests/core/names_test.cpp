@@ -22,6 +22,23 @@ TEST(Names, NearestByEdits) {
             "whitted_integrator");
 }
 
+TEST(Names, APrefixInAnyCaseNamesOne) {
+  const std::vector<std::string> views{"ACES SDR", "standard", "stand", "neutral", "Raw", "raw"};
+  EXPECT_EQ(find_by_prefix("view", "aces", views), "ACES SDR");
+  EXPECT_EQ(find_by_prefix("view", "N", views), "neutral");
+  EXPECT_EQ(find_by_prefix("view", "stand", views), "stand");
+  EXPECT_EQ(find_by_prefix("view", "STANDARD", views), "standard");
+  EXPECT_EQ(find_by_prefix("view", "raw", views), "raw");
+  try {
+    find_by_prefix("view", "st", views);
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "view 'st' may be any of standard, stand");
+  }
+  for (const char* name : {"", "nuetral", "ACES SDRx"})
+    EXPECT_THROW(find_by_prefix("view", name, views), Error);
+}
+
 TEST(Names, MessageSuggestsAndLists) {
   EXPECT_EQ(unknown_name_message("colour", "gren", colours),
             "unknown colour 'gren'; did you mean 'green'? There are: red, green, blue");

@@ -35,6 +35,22 @@ TEST(Quantities, SecondsThatMakeNoSense) {
   EXPECT_THROW(parse_seconds(""), Error);
 }
 
+TEST(Quantities, Margins) {
+  EXPECT_FLOAT_EQ(parse_margin("8%"), 0.08f);
+  EXPECT_FLOAT_EQ(parse_margin("0.08"), 0.08f);
+  EXPECT_EQ(parse_margin("0"), 0);
+  for (const char* text : {"1", "-1%", "50%", "8%%", "x", "inf"}) expect_refused(parse_margin, text);
+  EXPECT_THROW(parse_margin(""), Error);
+}
+
+TEST(Quantities, Points) {
+  EXPECT_EQ(parse_point("1.5,0,-2"), (std::array<float, 3>{1.5f, 0, -2}));
+  EXPECT_EQ(parse_point("-.5,1e3,0"), (std::array<float, 3>{-0.5f, 1000, 0}));
+  for (const char* text : {"1,2", "1,2,3,4", "1 2 3", "1,,2", "nan,0,0", "1e40,0,0", "--1,0,0"})
+    expect_refused(parse_point, text);
+  EXPECT_THROW(parse_point(""), Error);
+}
+
 TEST(Quantities, Fractions) {
   EXPECT_DOUBLE_EQ(parse_fraction("1%"), 0.01);
   EXPECT_DOUBLE_EQ(parse_fraction("0.5 %"), 0.005);

@@ -6,7 +6,9 @@
 #include "integrators/render.h"
 #include "scene/accel/proof/exact.h"
 #include "scene/camera.h"
+#include "scene/framing.h"
 #include "scene/import/import.h"
+#include "scene/subject.h"
 #include "tests/scene/accel_support.h"
 #include "tests/support/test_scenes.h"
 
@@ -28,7 +30,13 @@ struct View {
 
   static CameraDescription view_of(const std::string& name, const Scene& scene) {
     const auto cameras = import_scene(file_of(name)).cameras;
-    return cameras.empty() ? fitted_camera(scene.bounds(), float(width) / height) : cameras.front();
+    if (!cameras.empty()) return cameras.front();
+    CameraDescription camera;
+    camera.to_world = {{1, 0, 0}, {0, 0.8f, -0.6f}, {0, 0.6f, 0.8f}, {0, 0, 0}};
+    const Subject subject(scene.geometry());
+    return fit_camera(
+        camera, [&](const Vec3f& direction) { return subject.farthest(direction); }, float(width) / height,
+        0.05f);
   }
   static std::string file_of(const std::string& name) {
     return VERNIER_SOURCE_DIR "/tests/scenes/" + name + ".gltf";

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "scene/geometry.h"
+
+namespace vernier {
+
+/// What a picture of a scene is of: its instances but for their setting. An instance is setting when it is
+/// so much larger than all smaller ones together that these would be lost in a view of it: ten times for
+/// something flat (the ground, a backdrop), a hundred times for anything else (the dome of a sky).
+class Subject {
+ public:
+  /// The geometry must live as long.
+  explicit Subject(const SceneGeometry& geometry);
+
+  bool empty() const { return parts_.empty(); }
+  /// Instances that were left out as setting.
+  size_t left_out() const { return left_out_; }
+  /// Of the triangles' corners, in the world.
+  const Bounds& bounds() const { return bounds_; }
+  /// The corner of a triangle that lies farthest in a direction. The subject must not be empty.
+  Vec3f farthest(const Vec3f& direction) const;
+  /// Unit normal of a subject that is as good as flat, a card: on the side of its fronts, or toward `viewer`
+  /// where it has as many on both.
+  std::optional<Vec3f> flat_normal(const Vec3f& viewer) const;
+
+ private:
+  struct Part {
+    uint32_t instance;
+    Bounds bounds;
+  };
+
+  const SceneGeometry& geometry_;
+  std::vector<Part> parts_;
+  size_t left_out_ = 0;
+  Bounds bounds_;
+};
+
+}  // namespace vernier

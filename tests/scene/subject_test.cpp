@@ -1,0 +1,92 @@
+#include "scene/subject.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/test_scenes.h"
+
+namespace vernier::test {
+namespace {
+
+MeshDescription ground(float size) {
+  return parallelogram({-size / 2, 0, size / 2}, {size, 0, 0}, {0, 0, -size});
+}
+
+MeshDescription cube(const Vec3f& center, float size) {
+  return box(center - Vec3f(size / 2), center + Vec3f(size / 2));
+}
+
+TEST(Subject, AGroundThatDwarfsTheSubjectIsSetting) {
+  SceneBuilder builder;
+  builder.add(ground(100), diffuse(0.5f)).add(cube({0, 0.1f, 0}, 0.2f), diffuse(0.5f));
+  const Scene scene = builder.build();
+  const Subject subject(scene.geometry());
+  EXPECT_EQ(subject.left_out(), 1u);
+  EXPECT_NEAR(subject.bounds().upper.x, 0.1f, 1e-6);
+  EXPECT_NEAR(subject.farthest({1, 0, 0}).x, 0.1f, 1e-6);
+}
+
+TEST(Subject, SkyDomeAndGroundAreBothSetting) {
+  SceneBuilder builder;
+  builder.add(sphere({0, 0, 0}, 1000, 8, 8), emitter(1)).add(ground(300), diffuse(0.5f));
+  builder.add(cube({0, 0.5f, 0}, 1), diffuse(0.5f)).add(cube({2, 0.5f, 0}, 1), diffuse(0.5f));
+  const Scene scene = builder.build();
+  EXPECT_EQ(Subject(scene.geometry()).left_out(), 2u);
+}
+
+TEST(Subject, ABodyWithSmallPartsAndAFloorOfItsSizeAreSeenWhole) {
+  SceneBuilder builder;
+  builder.add(cube({0, 1, 0}, 2), diffuse(0.5f)).add(cube({0.1f, 1.7f, 1}, 0.03f), diffuse(0.5f));
+  builder.add(ground(6), diffuse(0.5f));
+  const Scene scene = builder.build();
+  const Subject subject(scene.geometry());
+  EXPECT_EQ(subject.left_out(), 0u);
+  EXPECT_NEAR(subject.bounds().upper.x, 3, 1e-6);
+}
+
+TEST(Subject, AGroundAloneIsTheSubject) {
+  const Scene scene = SceneBuilder().add(ground(100), diffuse(0.5f)).build();
+  const Subject subject(scene.geometry());
+  EXPECT_FALSE(subject.empty());
+  EXPECT_EQ(subject.left_out(), 0u);
+}
+
+TEST(Subject, InstancesAreFoundWhereTheyStand) {
+  Transform moved;
+  moved.origin = {10, 0, 0};
+  const Scene scene = SceneBuilder().add(cube({0, 0, 0}, 1), diffuse(0.5f), moved).build();
+  const Subject subject(scene.geometry());
+  EXPECT_NEAR(subject.farthest({1, 0, 0}).x, 10.5f, 1e-5);
+  EXPECT_NEAR(subject.farthest({-1, 0, 0}).x, 9.5f, 1e-5);
+}
+
+TEST(Subject, NothingIsEmpty) {
+  const Scene scene = SceneBuilder().build();
+  EXPECT_TRUE(Subject(scene.geometry()).empty());
+}
+
+TEST(Subject, ACardFacesTheWayItsFrontDoes) {
+  const Vec3f viewer = normalize(Vec3f(0.5f, 0.3f, 1));
+  for (const Vec3f& b : {Vec3f(0, 1, 0), Vec3f(0, -1, 0), Vec3f(0, 0.6f, 0.8f)}) {
+    const Scene scene = SceneBuilder().add(parallelogram({3, 2, 1}, {1, 0, 0}, b), diffuse(0.5f)).build();
+    const auto normal = Subject(scene.geometry()).flat_normal(viewer);
+    ASSERT_TRUE(normal);
+    EXPECT_NEAR(length(*normal - cross(Vec3f(1, 0, 0), b)), 0, 1e-5) << b;
+  }
+}
+
+TEST(Subject, ACardWithTwoFrontsFacesTheViewer) {
+  const Scene scene = SceneBuilder().add(box({0, 0, 0}, {2, 1, 0.005f}), diffuse(0.5f)).build();
+  const Subject subject(scene.geometry());
+  EXPECT_NEAR(subject.flat_normal({0.5f, 0.3f, 1}).value_or(Vec3f(0)).z, 1, 1e-5);
+  EXPECT_NEAR(subject.flat_normal({0.5f, 0.3f, -1}).value_or(Vec3f(0)).z, -1, 1e-5);
+}
+
+TEST(Subject, BodiesAreNotFlat) {
+  const Scene box_scene = SceneBuilder().add(box({0, 0, 0}, {2, 1, 0.2f}), diffuse(0.5f)).build();
+  EXPECT_FALSE(Subject(box_scene.geometry()).flat_normal({0, 0, 1}));
+  const Scene sphere_scene = SceneBuilder().add(sphere({0, 0, 0}, 1, 16, 32), diffuse(0.5f)).build();
+  EXPECT_FALSE(Subject(sphere_scene.geometry()).flat_normal({0, 0, 1}));
+}
+
+}  // namespace
+}  // namespace vernier::test
