@@ -211,9 +211,9 @@ std::string summary_line(const RenderReport& report, const RenderFlags& flags, c
   return fmt::format("wrote {}: {}x{}, {:.4g} spp{}, load {}, build {}, render {}, {} rays/s{}",
                      fmt::join(flags.outputs, ", "), result.film.width(), result.film.height(),
                      samples_per_pixel(result), error_text(result.error) + missing_text(result.missing),
-                     format_seconds(report.load_seconds),
-                     format_seconds(report.build_seconds), format_seconds(result.seconds),
-                     format_count(rate(total(result.rays), result.seconds)), shortfall(report, result));
+                     format_seconds(report.load_seconds), format_seconds(report.build_seconds),
+                     format_seconds(result.seconds), format_count(rate(total(result.rays), result.seconds)),
+                     shortfall(report, result));
 }
 
 }  // namespace vernier::apps

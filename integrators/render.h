@@ -72,7 +72,7 @@ struct RenderResult {
   double seconds = 0;
   uint64_t samples = 0;
   RayCounts rays;
-  MissingEstimate missing;  ///< known bias, which `error` does not contain
+  MissingEstimate missing;                     ///< known bias, which `error` does not contain
   uint64_t bad_samples = 0;                    ///< rejected by the film
   std::vector<BadSample> bad_sample_examples;  ///< the first few by column, row, half and index
 };
