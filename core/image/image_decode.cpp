@@ -6,11 +6,11 @@
 #include <webp/decode.h>
 
 #include <algorithm>
-#include <cstring>
 #include <memory>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/image/png_repair.h"
 
 namespace vernier {
 namespace {
@@ -42,29 +42,6 @@ Image8 decode_webp(std::span<const uint8_t> bytes, const std::string& name, bool
   return image;
 }
 
-/// A PNG file that is cut off, with the chunk it ends in shortened to what there is and with an end.
-std::vector<uint8_t> completed_png(std::span<const uint8_t> bytes, size_t last_chunk) {
-  std::vector<uint8_t> whole(bytes.begin(), bytes.begin() + ptrdiff_t(last_chunk));
-  const auto add_word = [&](uint32_t word) {
-    for (int shift = 24; shift >= 0; shift -= 8) whole.push_back(uint8_t(word >> shift));
-  };
-  const auto add_chunk = [&](std::span<const uint8_t> type_and_data) {
-    add_word(uint32_t(type_and_data.size() - 4));
-    whole.insert(whole.end(), type_and_data.begin(), type_and_data.end());
-    add_word(png_checksum(type_and_data));
-  };
-  const auto rest = bytes.subspan(last_chunk);
-  if (rest.size() > 8 && std::memcmp(&rest[4], "IDAT", 4) == 0) {
-    // The checksum may be there in part.
-    const size_t length = std::min<size_t>(
-        rest.size() - 8, size_t(rest[0]) << 24 | size_t(rest[1]) << 16 | size_t(rest[2]) << 8 | rest[3]);
-    add_chunk(rest.subspan(4, 4 + length));
-  }
-  const uint8_t end[] = {'I', 'E', 'N', 'D'};
-  add_chunk(end);
-  return whole;
-}
-
 template <typename T>
 BasicImage<T> convert(Image8 image) {
   if constexpr (std::is_same_v<T, uint8_t>) return image;
@@ -74,22 +51,13 @@ BasicImage<T> convert(Image8 image) {
   return converted;
 }
 
-/// Reads what there is: of an image that breaks off, when `in_part`, the rows before that, if any.
 template <typename T>
-BasicImage<T> read_all_channels(OIIO::ImageInput& input, const std::string& name, bool in_part) {
+BasicImage<T> read_all_channels(OIIO::ImageInput& input, const std::string& name) {
   const OIIO::ImageSpec spec = input.spec();
   BasicImage<T> image(spec.width, spec.height, spec.nchannels);
-  const OIIO::TypeDesc type = OIIO::BaseTypeFromC<T>::value;
   input.threads(1);  // callers decode many images at once
-  if (!in_part) {
-    if (!input.read_image(0, 0, 0, spec.nchannels, type, image.values.data()))
-      throw input_error(name, fmt::format("cannot decode image, it is damaged: {}", input.geterror()));
-    return image;
-  }
-  int rows = 0;
-  while (rows < spec.height && input.read_scanline(rows, 0, type, image.pixel(0, rows))) ++rows;
-  if (rows == 0) throw input_error(name, fmt::format("cannot decode image: {}", input.geterror()));
-  if (rows < spec.height) input.geterror();
+  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::BaseTypeFromC<T>::value, image.values.data()))
+    throw input_error(name, fmt::format("cannot decode image, it is damaged: {}", input.geterror()));
   return image;
 }
 
@@ -98,8 +66,7 @@ BasicImage<T> decode(std::span<const uint8_t> bytes, const ImageHeader& header, 
                      bool in_part) {
   if (header.format == std::string_view("webp")) return convert<T>(decode_webp(bytes, name, in_part));
   std::vector<uint8_t> completed;
-  if (in_part && header.format == std::string_view("png"))
-    bytes = completed = completed_png(bytes, header.last_chunk);
+  if (in_part && header.format == std::string_view("png")) bytes = completed = complete_png(bytes, name);
   OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
   const auto input = OIIO::ImageInput::create(header.format);
   if (!input)
@@ -111,7 +78,7 @@ BasicImage<T> decode(std::span<const uint8_t> bytes, const ImageHeader& header, 
   // The name's extension must be the format's: some readers check it.
   if (!input->open(fmt::format("memory.{}", header.format), spec, config))
     throw input_error(name, fmt::format("cannot decode {} image: {}", header.format, input->geterror()));
-  return read_all_channels<T>(*input, name, in_part);
+  return read_all_channels<T>(*input, name);
 }
 
 std::string description_of_damage(const ImageHeader& header, size_t size) {

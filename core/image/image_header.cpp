@@ -43,7 +43,6 @@ ImageHeader parse_png(Bytes bytes) {
     header.intact = has_text(bytes, at + 4, "IEND");
     at += 12 + length;
   }
-  header.last_chunk = at;
   return header;
 }
 

@@ -11,9 +11,8 @@ namespace vernier {
 struct ImageHeader {
   const char* format = "";        ///< OpenImageIO's name of the format
   int64_t width = 0, height = 0;  ///< zero when the header ends before it gives them
-  bool intact = false;    ///< the file reaches its format's own end mark, and PNG's checksums are right
-  bool cut_off = false;   ///< else: it ends before that mark, and what there is has nothing wrong
-  size_t last_chunk = 0;  ///< PNG: where the chunk begins that the file ends in
+  bool intact = false;   ///< the file reaches its format's own end mark, and PNG's checksums are right
+  bool cut_off = false;  ///< else: it ends before that mark, and what there is has nothing wrong
 };
 
 /// Checksum of a PNG chunk (ISO/IEC 15948, 5.5).

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/base/parallel.h"
 #include "scene/import/cameras_lights.h"
 #include "scene/import/features.h"
 #include "scene/import/image_light.h"
@@ -61,6 +62,25 @@ void add_textures(const Document& document, const std::vector<RoughnessFromGloss
   }
 }
 
+/// Throws Error(input) when something lies so far out that areas and volumes overflow single precision, which
+/// bounding volume hierarchies compute in.
+void check_extents(const Document& document, const SceneDescription& scene) {
+  constexpr float farthest = 1e18f;
+  std::vector<Vec3f> reach(scene.meshes.size(), Vec3f(0, 0, 0));
+  parallel_for(reach.size(), [&](size_t i) {
+    for (const Vec3f& p : scene.meshes[i].positions) reach[i] = max(reach[i], abs(p));
+  });
+  for (const auto& instance : scene.instances) {
+    const Vec3f& own = reach[instance.mesh];
+    const Vec3f placed = instance.to_world.absolute_point(own, 1);
+    if (max_component(own) <= farthest && max_component(placed) <= farthest) continue;
+    document.fail("/nodes",
+                  fmt::format("the mesh of node '{}' reaches farther than {:g} m from the origin, which is "
+                              "too large for single precision; scale the scene down",
+                              instance.name, farthest));
+  }
+}
+
 /// Throws Error(input) about the first thing that is not rendered exactly as the file says.
 void check_strictly(const Document& document, const SceneDescription& scene) {
   for (const auto& feature : scene.features)
@@ -103,6 +123,7 @@ SceneDescription import_scene(const std::string& path, const ImportOptions& opti
   MeshRepairs repairs;
   scene.meshes = read_meshes(document, placement.meshes, places.to_world, repairs);
   for (auto& notice : repairs.notices()) scene.notices.push_back(std::move(notice));
+  check_extents(document, scene);
 
   std::vector<std::string> fingerprints = document.fingerprints();
   keep_used_materials(std::move(imported.materials), scene);

@@ -150,7 +150,6 @@ TEST(ImportFiles, ReportsJsonErrorsOnOneLine) {
   const std::string error = import_error(folder.write("scene.gltf", "{\n  \"asset\": {\n"));
   EXPECT_THAT(error, HasSubstr("JSON: parse error at line 3"));
   EXPECT_EQ(error.find('\n'), std::string::npos);
-  EXPECT_THAT(import_error(folder.write("scene.gltf", "{\"asset\": 1e400}")), HasSubstr("JSON"));
   EXPECT_THAT(import_error(folder.write("scene.gltf", "[]")), HasSubstr("expected an object"));
 }
 

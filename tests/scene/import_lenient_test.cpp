@@ -125,8 +125,9 @@ TEST(ImportLenient, NumbersBeyondSinglePrecisionBecomeItsLargest) {
     EXPECT_EQ(with_text(light + "/range", text).lights.at(0).range, FLT_MAX) << text;
     EXPECT_EQ(with_text(volume + "/attenuationDistance", text).materials.at(0).attenuation_distance, FLT_MAX);
     EXPECT_EQ(with_text("/cameras/0/perspective/zfar", text).cameras.size(), 1u);
-    EXPECT_EQ(with_text("/materials/0/alphaCutoff", "-" + std::string(text)).materials.at(0).alpha_cutoff,
-              -FLT_MAX);
+    EXPECT_EQ(
+        with_text("/materials/0/alphaCutoff", std::string("-").append(text)).materials.at(0).alpha_cutoff,
+        -FLT_MAX);
     EXPECT_TRUE(with_text(light + "/range", text).notices.size() == scene_of_all().import().notices.size());
   }
   const std::string digits(400, '9');

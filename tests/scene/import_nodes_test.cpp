@@ -126,6 +126,19 @@ TEST(ImportNodes, RejectsTransformsThatDoNotFit) {
   EXPECT_THAT(import_error(file), HasSubstr("/nodes/0: the transform is not affine"));
 }
 
+TEST(ImportNodes, RejectsWhatIsTooFarOut) {
+  for (const float size : {1e17f, 2e18f, 1e25f, 3.4e38f}) {
+    GltfFile file;
+    const int positions = file.add_accessor(std::vector<float>{0, 0, 0, size, 0, 0, 0, -size, 0}, "VEC3");
+    file.add_mesh({{"POSITION", positions}});
+    const std::string error = import_error(file);
+    EXPECT_EQ(error.find("reaches farther than 1e+18 m") != std::string::npos, size > 1e18f) << size << error;
+  }
+  GltfFile file = mesh_only();
+  file.add_root({{"mesh", 0}, {"name", "star"}, {"translation", {0, 0, -3.4e38}}});
+  EXPECT_THAT(import_error(file), HasSubstr("the mesh of node 'star' reaches farther than"));
+}
+
 TEST(ImportNodes, PlacesGpuInstances) {
   GltfFile file = mesh_only();
   const int translations = file.add_accessor(std::vector<float>{1, 0, 0, 0, 1, 0}, "VEC3");

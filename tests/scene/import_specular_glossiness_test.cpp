@@ -68,8 +68,8 @@ TEST(ImportSpecularGlossiness, GlossinessTexturesBecomeRoughness) {
   EXPECT_EQ(m.roughness, 1.f) << "the factor is in the texture";
   const Texture& roughness = scene.textures.at(size_t(m.metallic_roughness_texture.texture));
   EXPECT_EQ(roughness.wrap_s(), WrapMode::clamp_to_edge);
-  EXPECT_NEAR(roughness.sample({0.25f, 0.5f}, TexelEncoding::linear).y, 1 - 0.5, 0.5 / 255);
-  EXPECT_NEAR(roughness.sample({0.75f, 0.5f}, TexelEncoding::linear).y, 1 - 0.5 * 51 / 255, 0.5 / 255);
+  EXPECT_NEAR(roughness.sample({0.25f, 0.5f}, TexelEncoding::linear).y, 1 - 0.5, 0.51 / 255);
+  EXPECT_NEAR(roughness.sample({0.75f, 0.5f}, TexelEncoding::linear).y, 1 - 0.5 * 51 / 255, 0.51 / 255);
   EXPECT_EQ(scene.materials.at(1).metallic_roughness_texture.texture, m.metallic_roughness_texture.texture);
 }
 
