@@ -142,7 +142,7 @@ float light_at(float inner, float outer, float angle) {
   SurfacePoint point;
   point.position = Vec3f(std::sin(angle), 0, -std::cos(angle));
   point.ng = Vec3f(0, 0, 1);
-  const auto sample = PunctualLight(description, {}).sample(point, {0, 0});
+  const auto sample = PunctualLight(description).sample(point, {0, 0});
   return sample ? sample->radiance.x : 0;
 }
 
