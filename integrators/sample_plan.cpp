@@ -1,6 +1,8 @@
 #include "integrators/sample_plan.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/base/parallel.h"
 
@@ -24,6 +26,9 @@ class HalfPlan {
     }
   }
 
+  static constexpr size_t bytes_per_pixel() {
+    return sizeof(decltype(needs_)::value_type) + sizeof(decltype(done_)::value_type);
+  }
   bool is_even() const { return !(need_sum_ > 0); }
   /// What every pixel gets at least.
   double fewest() const { return fewest_; }
@@ -90,7 +95,15 @@ float SampleGuide::squared_need(const Cell& cell) {
     const float variance = std::max(0.f, cell.sum_of_squares[c] - cell.sum[c] * mean) / (n - 1);
     relative += variance / (mean * mean + 0.01f);
   }
-  return relative;
+  return std::isfinite(relative) ? relative : 0;  // squares of very bright samples are beyond float
+}
+
+bool SampleGuide::is_plausible() const {
+  return std::all_of(cells_.begin(), cells_.end(), [](const Cell& cell) {
+    bool plausible = true;
+    for (int c = 0; c < 3; ++c) plausible = plausible && cell.sum[c] >= 0 && cell.sum_of_squares[c] >= 0;
+    return plausible;
+  });
 }
 
 std::vector<float> SampleGuide::needs() const {
@@ -109,6 +122,8 @@ std::vector<float> SampleGuide::needs() const {
   });
   return smooth;
 }
+
+size_t SamplePlan::planning_bytes_per_pixel() { return Film::halves * HalfPlan::bytes_per_pixel(); }
 
 SamplePlan SamplePlan::uniform(const Film& film, uint32_t size) {
   Numbers plan;

@@ -1,6 +1,5 @@
 #include "scene/import/asset_files.h"
 
-#include <OpenImageIO/hash.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -169,12 +168,6 @@ Bytes AssetFiles::read_relative(const std::string& uri, const std::string& place
   const std::string problem = read_regular_file(path, O_NOFOLLOW, bytes);
   if (!problem.empty()) fail("cannot be read: " + problem);
   return bytes;
-}
-
-std::string fingerprint(std::span<const uint8_t> bytes) {
-  const auto hash = OIIO::farmhash::Fingerprint128(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  return fmt::format("{:016x}{:016x}", OIIO::farmhash::Uint128High64(hash),
-                     OIIO::farmhash::Uint128Low64(hash));
 }
 
 }  // namespace vernier

@@ -36,7 +36,4 @@ class AssetFiles {
   std::string folder_;  ///< canonical
 };
 
-/// 128-bit fingerprint as 32 hexadecimal digits; the same on every machine, not meant against forgery.
-std::string fingerprint(std::span<const uint8_t> bytes);
-
 }  // namespace vernier

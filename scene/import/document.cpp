@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/fingerprint.h"
 #include "scene/import/container.h"
 #include "scene/import/meshopt.h"
 #include "scene/import/ordered_parallel.h"

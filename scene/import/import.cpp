@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/base/fingerprint.h"
 #include "scene/import/cameras_lights.h"
 #include "scene/import/features.h"
 #include "scene/import/image_light.h"

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/base/error.h"
+#include "core/base/fingerprint.h"
 #include "core/image/image_io.h"
 #include "scene/import/ordered_parallel.h"
 
