@@ -13,7 +13,7 @@ ORDER = ["core", "materials", "scene", "integrators", "apps"]
 WRAPPED = [
     (r"embree[34]/.*", r"scene/accel/embree[^/]*\.(cpp|h)"),
     (r"tiny_gltf\.h", r"scene/import/.*"),
-    (r"OpenImageIO/hash\.h", r"scene/import/asset_files\.cpp|core/image/[^/]*\.cpp"),
+    (r"OpenImageIO/hash\.h", r"core/(base/fingerprint|image/[^/]*)\.cpp"),
     (r"OpenImageIO/(?!hash\.h).*", r"(core/image/[^/]*|tests/core/.*)\.cpp"),
     (r"OpenColorIO/.*", r"(core/image/[^/]*|tests/core/.*)\.cpp"),
     (r"OpenImageDenoise/.*", r"(core/image|tests/oidn)/denoise_oidn[^/]*\.cpp"),

@@ -8,7 +8,7 @@
 #include "apps/flags.h"
 #include "core/base/parallel.h"
 #include "core/base/quantities.h"
-#include "core/base/text_file.h"
+#include "core/base/atomic_file.h"
 #include "integrators/render.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
@@ -77,7 +77,7 @@ Json summary(const std::vector<double>& errors) {
 }
 
 ExitCode run_bench_bias(const BiasFlags& flags, const Program& program) {
-  if (!flags.json.empty()) check_writable_text_file(flags.json);
+  if (!flags.json.empty()) check_writable(flags.json);
   const auto [width, height] = parse_pixel_size(flags.size);
   RenderOptions options;
   options.width = width;
@@ -98,7 +98,7 @@ ExitCode run_bench_bias(const BiasFlags& flags, const Program& program) {
                adaptive ? "adaptive:" : "even:", 100 * found["bias"].get<double>(),
                100 * found["standard_error"].get<double>());
   }
-  if (!flags.json.empty()) write_text_file(flags.json, report.dump(2) + "\n");
+  if (!flags.json.empty()) write_file(flags.json, report.dump(2) + "\n");
   return ExitCode::done;
 }
 

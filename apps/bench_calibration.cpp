@@ -7,9 +7,9 @@
 #include "apps/calibration.h"
 #include "apps/choose_camera.h"
 #include "apps/flags.h"
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/names.h"
-#include "core/base/text_file.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
@@ -64,7 +64,7 @@ Reference read_reference_with_error(const std::string& file) {
 
 ExitCode run_bench_calibration(const CalibrationFlags& flags, const Program& program) {
   require_scene(flags.render.scene, "bench calibration");
-  if (!flags.json.empty()) check_writable_text_file(flags.json);
+  if (!flags.json.empty()) check_writable(flags.json);
   if (flags.reference.empty() && flags.seeds < fewest_runs_without_reference)
     throw Error(ErrorKind::usage, fmt::format("--seeds: at least {} without --reference, since each run is "
                                               "compared with the mean of the others",
@@ -106,7 +106,7 @@ ExitCode run_bench_calibration(const CalibrationFlags& flags, const Program& pro
   report.update(calibrate(runs, given, options.target_error));
   print_report(report);
   if (!flags.json.empty())
-    write_text_file(flags.json, report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    write_file(flags.json, report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   return ExitCode::done;
 }
 
@@ -118,14 +118,14 @@ void register_bench_calibration(CLI::App& bench, Program& program) {
   auto flags = std::make_shared<CalibrationFlags>();
   add_scene_flags(*command, flags->render.scene, flags->render.import);
   command->add_option("--spp", flags->spp, "samples a pixel of each run")
-      ->check(whole_number(2, 1 << 30))
+      ->transform(whole_number(2, 1 << 30))
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--error", flags->render.error, "instead: stop each run at this estimated error")
       ->check(parsed_by(parse_fraction))
       ->type_name("ERROR");
   command->add_option("--seeds", flags->seeds, "runs")
-      ->check(whole_number(1, 1'000'000))
+      ->transform(whole_number(1, 1'000'000))
       ->type_name("K")
       ->capture_default_str();
   command

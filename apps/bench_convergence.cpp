@@ -9,8 +9,9 @@
 #include "apps/convergence.h"
 #include "apps/convergence_page.h"
 #include "apps/flags.h"
+#include "apps/outputs.h"
+#include "core/base/atomic_file.h"
 #include "core/base/names.h"
-#include "core/base/text_file.h"
 
 namespace vernier::apps {
 namespace {
@@ -28,10 +29,9 @@ struct Flags {
 ConvergencePlan checked_plan(const Flags& flags) {
   ConvergencePlan plan = flags.plan;
   if (plan.scenes.empty())
-    throw Error(ErrorKind::usage,
-                "which scenes? Give .gltf or .glb files; see vernier bench convergence --help");
+    throw Error(ErrorKind::usage, "missing SCENES (.gltf, .glb); see vernier bench convergence --help");
   if (flags.out.empty())
-    throw Error(ErrorKind::usage, "where to? Give --out DIR; see vernier bench convergence --help");
+    throw Error(ErrorKind::usage, "missing --out DIR; see vernier bench convergence --help");
   if (!plan.references.empty() && plan.references.size() != plan.scenes.size())
     throw Error(ErrorKind::usage,
                 fmt::format("{} scenes and {} references; give --reference once a scene, in order",
@@ -112,9 +112,10 @@ ExitCode run_bench_convergence(const Flags& flags, const Program& program) {
   fs::create_directories(folder, failed);  // a failure shows at the first file
   const auto file = [&](const char* name) { return (folder / name).string(); };
   for (const char* name : {"convergence.csv", "convergence.json", "convergence.html"})
-    check_writable_text_file(file(name));
+    check_writable(file(name));
 
   NoticeLog log(false);
+  Outputs outputs;
   std::vector<SceneConvergence> scenes;
   Json report = bench_header(program);
   report["times"] = plan.times;
@@ -124,13 +125,13 @@ ExitCode run_bench_convergence(const Flags& flags, const Program& program) {
     scenes.push_back(measure_convergence(plan, i, log));
     report["scenes"].push_back(scenes.back().json);
     // After each scene: who stops a long bench keeps what has been measured.
-    write_text_file(file("convergence.csv"), csv(scenes));
-    write_text_file(file("convergence.json"),
-                    report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-    write_text_file(file("convergence.html"), convergence_page(report, scenes));
+    const std::string json = report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    outputs.attempt([&] { write_file(file("convergence.csv"), csv(scenes)); });
+    outputs.attempt([&] { write_file(file("convergence.json"), json); });
+    outputs.attempt([&] { write_file(file("convergence.html"), convergence_page(report, scenes)); });
   }
   print_summary(scenes);
-  return ExitCode::done;
+  return outputs.have_failed() ? ExitCode::input : ExitCode::done;
 }
 
 void add_plan_flags(CLI::App& command, Flags& flags) {
@@ -148,7 +149,7 @@ void add_plan_flags(CLI::App& command, Flags& flags) {
       ->allow_extra_args(false);
   plan.reference_spp = 2048;
   command.add_option("--reference-spp", plan.reference_spp, "else: path traced, this many samples a pixel")
-      ->check(whole_number(2, 1 << 30))
+      ->transform(whole_number(2, 1 << 30))
       ->type_name("N")
       ->capture_default_str();
   command.add_option("--times", flags.times, "of rendering, separated by commas")
@@ -158,7 +159,7 @@ void add_plan_flags(CLI::App& command, Flags& flags) {
       ->capture_default_str();
   plan.seeds = 5;
   command.add_option("--seeds", plan.seeds, "runs of each time")
-      ->check(whole_number(1, 10000))
+      ->transform(whole_number(1, 10000))
       ->type_name("K")
       ->capture_default_str();
 }

@@ -10,9 +10,9 @@
 #include "apps/ray_timing.h"
 #include "apps/scene_summary.h"
 #include "apps/surroundings.h"
+#include "core/base/atomic_file.h"
 #include "core/base/parallel.h"
 #include "core/base/quantities.h"
-#include "core/base/text_file.h"
 #include "scene/scene.h"
 
 namespace vernier::apps {
@@ -128,7 +128,7 @@ std::string difference_table(const std::vector<TimedAccelerator>& candidates, co
 
 ExitCode run_bench_rays(const BenchRaysFlags& flags, const Program& program) {
   require_scene(flags.scene, "bench rays");
-  if (!flags.json.empty()) check_writable_text_file(flags.json);
+  if (!flags.json.empty()) check_writable(flags.json);
   std::vector<TimedAccelerator> candidates;
   std::vector<std::string> names = flags.accelerators;
   names.emplace_back(yardstick);
@@ -173,7 +173,7 @@ ExitCode run_bench_rays(const BenchRaysFlags& flags, const Program& program) {
   for (const RayKind& kind : ray_kinds) json["rays"][std::string(kind.name)] = (rays.*kind.rays).size();
   for (const TimedAccelerator& candidate : candidates)
     json["accelerators"].push_back(candidate_json(candidate, embree, rays, triangles));
-  write_text_file(flags.json, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_file(flags.json, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   return ExitCode::done;
 }
 
@@ -191,11 +191,11 @@ void register_bench_rays(CLI::App& bench, Program& program) {
       ->type_name("NAMES")
       ->capture_default_str();
   command->add_option("--paths", flags->paths, "recorded, whose rays are then timed")
-      ->check(whole_number(1, 1 << 24))
+      ->transform(whole_number(1, 1 << 24))
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--repetitions", flags->repetitions, "of every measurement")
-      ->check(whole_number(1, 1000))
+      ->transform(whole_number(1, 1000))
       ->type_name("N")
       ->capture_default_str();
   add_camera_flags(*command, flags->camera);

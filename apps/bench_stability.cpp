@@ -6,9 +6,10 @@
 
 #include "apps/bench.h"
 #include "apps/flags.h"
+#include "apps/outputs.h"
+#include "core/base/atomic_file.h"
 #include "core/base/names.h"
 #include "core/base/quantities.h"
-#include "core/base/text_file.h"
 #include "scene/accel/proof/cases.h"
 
 namespace vernier::apps {
@@ -95,7 +96,7 @@ ExitCode run_bench_stability(const BenchStabilityFlags& flags, const Program& pr
   const auto entries = accelerators_named(flags.accelerators);
   const auto cases = cases_named(flags.cases);
   for (const auto& path : {flags.json, flags.markdown})
-    if (!path.empty()) check_writable_text_file(path);
+    if (!path.empty()) check_writable(path);
 
   fmt::print("{:<20} {:>7}", "case", "rays");
   for (const AcceleratorEntry* entry : entries) fmt::print(" {:>12}", entry->name);
@@ -105,13 +106,16 @@ ExitCode run_bench_stability(const BenchStabilityFlags& flags, const Program& pr
   for (const HardCase* hard_case : cases)
     rows.push_back(measure(*hard_case, entries, static_cast<uint64_t>(flags.rays)));
 
+  Outputs outputs;
   if (!flags.json.empty()) {
     Json json = bench_header(program);
     for (const Row& row : rows) json["cases"].push_back(row_json(row, entries));
-    write_text_file(flags.json, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    outputs.attempt(
+        [&] { write_file(flags.json, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"); });
   }
-  if (!flags.markdown.empty()) write_text_file(flags.markdown, markdown_table(rows, entries));
-  return ExitCode::done;
+  if (!flags.markdown.empty())
+    outputs.attempt([&] { write_file(flags.markdown, markdown_table(rows, entries)); });
+  return outputs.have_failed() ? ExitCode::input : ExitCode::done;
 }
 
 }  // namespace
@@ -121,7 +125,7 @@ void register_bench_stability(CLI::App& bench, Program& program) {
       "stability", "What each accelerator makes of the hard cases of ray geometry (docs/accuracy.md)");
   auto flags = std::make_shared<BenchStabilityFlags>();
   command->add_option("--rays", flags->rays, "at most, for each case and accelerator")
-      ->check(whole_number(1000, 1 << 30))
+      ->transform(whole_number(1000, 1 << 30))
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--accelerator", flags->accelerators, "which to measure, separated by commas, or all")

@@ -8,16 +8,12 @@
 
 #include "apps/build_id.h"
 #include "apps/flags.h"
-#include "core/base/text_file.h"
-#include "scene/import/asset_files.h"
+#include "apps/machine.h"
+#include "core/base/atomic_file.h"
+#include "core/base/fingerprint.h"
 
 namespace vernier::apps {
 namespace {
-
-template <typename Value>
-std::string fingerprint_of(const Value* values, size_t count) {
-  return fingerprint({reinterpret_cast<const uint8_t*>(values), count * sizeof(Value)});
-}
 
 /// A name for people, and what tells apart cameras of one name.
 std::string camera_text(const CameraDescription& camera) {
@@ -26,7 +22,7 @@ std::string camera_text(const CameraDescription& camera) {
   const Transform& place = camera.to_world;
   for (const Vec3f& column : {place.x, place.y, place.z, place.origin})
     numbers.insert(numbers.end(), {column.x, column.y, column.z});
-  return fmt::format("{} ({:.8})", camera.name, fingerprint_of(numbers.data(), numbers.size()));
+  return fmt::format("{} ({:.8})", camera.name, fingerprint(std::as_bytes(std::span(numbers))));
 }
 
 /// What the samples depend on. The program's version is among it, for the same numbers may mean other light
@@ -58,7 +54,7 @@ RenderIdentity identity_of(const RenderRequest& request, const RenderReport& rep
   const Surroundings& surroundings = report.surroundings;
   if (surroundings.environment) {
     const auto& pixels = surroundings.environment->picture->values;
-    add("env", fingerprint_of(pixels.data(), pixels.size()));
+    add("env", fingerprint(std::as_bytes(std::span(pixels))));
     add("env-rotate", fmt::format("{}", flags.surroundings.rotate));
     add("env-scale", fmt::format("{}", flags.surroundings.scale));
   } else {
@@ -86,7 +82,7 @@ void add_checkpoint_flags(CLI::App& command, RenderFlags& flags) {
 }
 
 Checkpointing::Checkpointing(const RenderFlags& flags, NoticeLog& log) : flags_(flags), log_(log) {
-  if (!flags.checkpoint.empty()) check_writable_text_file(flags.checkpoint);
+  if (!flags.checkpoint.empty()) check_writable(flags.checkpoint);
   if (flags.resume.empty()) return;
   // So that a job that may be killed and started again is one command.
   std::error_code error;
@@ -107,7 +103,7 @@ RenderHooks Checkpointing::hooks(const RenderRequest& request, const RenderRepor
   RenderHooks hooks;
   if (flags_.checkpoint.empty() && !from_.state) return hooks;
   identity_ = identity_of(request, report, camera);
-  const std::string build = build_id();
+  const std::string build = build_id(), here = platform();
   if (from_.state) {
     if (take(from_.identity, "build") != build)
       log_.add({Notice::Severity::warning,
@@ -115,7 +111,22 @@ RenderHooks Checkpointing::hooks(const RenderRequest& request, const RenderRepor
                 fmt::format("{} was written by another build of Vernier; if that one took other samples, the "
                             "picture will not be the same as if it had never stopped",
                             flags_.resume)});
+    if (const std::string other = take(from_.identity, "platform"); other != here)
+      log_.add(
+          {Notice::Severity::warning,
+           {},
+           fmt::format("{} was written on another platform ({}; this is {}), whose last bits may differ; "
+                       "the picture may not be the same as if it had never stopped",
+                       flags_.resume, other, here)});
     require_same_render(flags_.resume, from_.identity, identity_);
+    const RenderOptions& options = report.options;
+    const bool cropped = options.crop.width > 0;
+    if (!from_.state->fits(cropped ? options.crop.width : options.width,
+                           cropped ? options.crop.height : options.height, options.adaptive))
+      throw Error(
+          ErrorKind::input, flags_.resume, {},
+          "is damaged: what it holds is not of the size that it says; use another checkpoint or render "
+          "without --resume");
     hooks.from = std::move(from_.state);
     log_.add({Notice::Severity::info,
               {},
@@ -123,6 +134,7 @@ RenderHooks Checkpointing::hooks(const RenderRequest& request, const RenderRepor
                           resumed_->samples_per_pixel, format_seconds(resumed_->seconds))});
   }
   identity_.emplace_back("build", build);
+  identity_.emplace_back("platform", here);
   if (!flags_.checkpoint.empty()) {
     hooks.save = [this](const RenderState& state) { write(state); };
     hooks.save_interval = parse_seconds(flags_.checkpoint_every);
@@ -159,8 +171,7 @@ void Checkpointing::add_to(nlohmann::ordered_json& stats) const {
 }
 
 void Checkpointing::require_written() const {
-  if (!failure_.empty())
-    throw Error(ErrorKind::output, failure_ + "; the pictures are written, the checkpoint is not");
+  if (!failure_.empty()) throw Error(ErrorKind::output, failure_);
 }
 
 }  // namespace vernier::apps

@@ -110,12 +110,9 @@ void print_text(const CompareFlags& flags, const Comparison& comparison) {
 
 ExitCode run_compare(const CompareFlags& flags) {
   if (flags.picture.empty() || flags.reference.empty())
-    throw Error(ErrorKind::usage,
-                "which pictures? Give a picture and its reference; see vernier compare --help");
+    throw Error(ErrorKind::usage, "missing X or R, a picture and its reference; see vernier compare --help");
   if (flags.no_flip && !flags.heatmap.empty())
     throw Error(ErrorKind::usage, "--heatmap shows FLIP, which --no-flip leaves out; drop one of the two");
-  if (!(flags.options.bias_level > 0 && flags.options.bias_level < 1))
-    throw Error(ErrorKind::usage, {}, "--bias-level", "expected a number between 0 and 1");
   std::vector<Limit> limits;
   for (const auto& text : flags.fail) limits.emplace_back(text);
   require_separate_files({flags.picture, flags.reference}, {flags.heatmap});
@@ -167,12 +164,13 @@ void register_compare(Program& program) {
       ->add_option(
           "--bias-level", flags->options.bias_level,
           "part of false findings allowed to the bias test, made when both files have an error layer")
+      ->transform(real_number(1e-12, 0.999))
       ->type_name("PART")
       ->capture_default_str();
   command
       ->add_option("--bias-block", flags->options.bias_block,
                    "pixels a side of the squares that the bias test compares; 1 needs exact error layers")
-      ->check(whole_number(1, 65536))
+      ->transform(whole_number(1, 65536))
       ->type_name("N")
       ->capture_default_str();
   command->callback([&program, flags] { program.run = [flags] { return run_compare(*flags); }; });

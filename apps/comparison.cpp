@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 
 #include "core/base/error.h"
 #include "core/base/names.h"
@@ -90,7 +91,7 @@ Limit::Limit(const std::string& text) {
   const char* end = text.data() + text.size();
   const char* begin = sign == std::string::npos ? end : text.data() + sign + 1;
   const auto [stopped, status] = std::from_chars(begin, end, bound_);
-  if (status != std::errc() || stopped != end)
+  if (status != std::errc() || stopped != end || std::isnan(bound_))
     throw Error(ErrorKind::usage, {}, "--fail",
                 fmt::format("expected METRIC>NUMBER or METRIC<NUMBER such as 'rmse>0.01', got '{}'", text));
   metric_ = &find_by_name(table, "metric", text.substr(0, sign));

@@ -30,8 +30,9 @@ ExitCode run_denoise(const DenoiseFlags& flags, const std::string& command_line)
     for (const Denoiser& entry : denoisers()) fmt::print("{:<12} {}\n", entry.name, entry.description);
     return ExitCode::done;
   }
-  if (flags.input.empty() || flags.output.empty())
-    throw Error(ErrorKind::usage, "which pictures? Give IN.exr -o OUT.exr; see vernier denoise --help");
+  if (flags.input.empty()) throw Error(ErrorKind::usage, "missing IN (.exr); see vernier denoise --help");
+  if (flags.output.empty())
+    throw Error(ErrorKind::usage, "missing -o FILE (.exr); see vernier denoise --help");
   const Denoiser& denoiser = find_denoiser(flags.filter);
   if (is_display_file(flags.output))
     throw Error(

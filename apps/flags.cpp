@@ -3,36 +3,55 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <set>
+#include <string_view>
 
 #include "core/base/error.h"
 
 namespace vernier::apps {
 
-CLI::Validator real_number(double least, double most) {
-  const auto check = [least, most](std::string& text) {
-    double value = 0;
-    if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most) return std::string();
-    return fmt::format("'{}' is not a number from {} to {}", text, least, most);
+namespace {
+
+/// The decimal number that is all of `text`, but for a plus sign in front. CLI11 itself takes 010 for eight,
+/// and 0x10 for a number.
+template <typename Number>
+std::optional<Number> parse_decimal(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return {};
+  return value;
+}
+
+/// Takes what lies between the two, and hands it to CLI11 as it cannot be misread.
+template <typename Number>
+CLI::Validator number_between(Number least, Number most, const char* kind) {
+  const auto check = [=](std::string& text) {
+    const auto value = parse_decimal<Number>(text);
+    if (!value || !(*value >= least && *value <= most))
+      return fmt::format("'{}' is not a {} from {} to {}", text, kind, least, most);
+    text = fmt::format("{}", *value);
+    return std::string();
   };
   return {check, ""};
 }
 
-CLI::Validator whole_number(int least, int most) {
-  const auto check = [least, most](std::string& text) {
-    int value = 0;
-    if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most) return std::string();
-    return fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
-  };
-  return {check, ""};
+}  // namespace
+
+CLI::Validator real_number(double least, double most) { return number_between(least, most, "number"); }
+
+CLI::Validator whole_number(uint64_t least, uint64_t most) {
+  return number_between(least, most, "whole number");
 }
 
 void add_threads_flag(CLI::App& command, unsigned& threads) {
   command.add_option("-t,--threads,--nthreads", threads, "0: all of the machine's")
-      ->check(whole_number(0, 4096))
+      ->transform(whole_number(0, 4096))
       ->type_name("N")
       ->capture_default_str();
 }
@@ -44,7 +63,7 @@ void add_scene_flags(CLI::App& command, std::string& scene, ImportOptions& optio
   command.add_option("--variant", options.variant, "of the materials, by name (KHR_materials_variants)")
       ->type_name("NAME");
   command.add_option("--at", options.time, "seconds into an animation (at rest)")
-      ->check(real_number(-1e9, 1e9))
+      ->transform(real_number(-1e9, 1e9))
       ->type_name("SECONDS");
   command
       .add_option(
@@ -81,8 +100,7 @@ void require_readable(const std::string& file) {
 
 void require_scene(const std::string& scene, const std::string& command) {
   if (scene.empty())
-    throw Error(ErrorKind::usage,
-                fmt::format("which scene? Give a .gltf or .glb file; see vernier {} --help", command));
+    throw Error(ErrorKind::usage, fmt::format("missing SCENE (.gltf, .glb); see vernier {} --help", command));
 }
 
 }  // namespace vernier::apps

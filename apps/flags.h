@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,11 +12,13 @@
 
 namespace vernier::apps {
 
-/// A finite number from `least` to `most`.
+// For CLI::Option::transform, which lets them replace a number by one that CLI11 cannot misread.
+
+/// A finite decimal number from `least` to `most`.
 CLI::Validator real_number(double least, double most);
 
-/// A whole number from `least` to `most`.
-CLI::Validator whole_number(int least, int most);
+/// A decimal whole number from `least` to `most`.
+CLI::Validator whole_number(uint64_t least, uint64_t most);
 
 /// Text that `parse` takes; it throws Error(usage) on any other.
 template <typename Parse>

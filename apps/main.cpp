@@ -7,6 +7,7 @@
 
 #include "apps/commands.h"
 #include "apps/messages.h"
+#include "apps/stop_signals.h"
 #include "core/base/error.h"
 #include "core/base/names.h"
 
@@ -91,7 +92,7 @@ ExitCode parse_failed(const CLI::App& app, const CLI::ParseError& error) {
   if (flag || (!extras.empty() && (no_command || dynamic_cast<const CLI::ExtrasError*>(&error))))
     print_error(describe_extras(app, extras));
   else if (no_command)
-    print_error(fmt::format("which command? See {} --help", full_name(command)));
+    print_error(fmt::format("missing COMMAND; see {} --help", full_name(command)));
   else
     print_error(error.what());
   return ExitCode::usage;
@@ -122,6 +123,7 @@ ExitCode run_program(int argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace vernier;
   using namespace vernier::apps;
+  install_cleanup_signals();
   ExitCode code = ExitCode::done;
   try {
     code = run_program(argc, argv);

@@ -27,7 +27,7 @@ struct MergeFlags {
 /// Renders of one picture by different seeds, put together.
 struct Merged {
   std::optional<RenderResult> result;
-  RenderIdentity identity;  ///< without seed and build
+  RenderIdentity identity;  ///< without seed, build and platform
   std::map<uint64_t, std::string> files_by_seed;
 
   void add(const std::string& path) {
@@ -35,6 +35,7 @@ struct Merged {
     const std::string seed = take(checkpoint.identity, "seed");
     if (seed.empty()) throw Error(ErrorKind::input, path, {}, "does not say its seed");
     take(checkpoint.identity, "build");  // machines may have their own
+    take(checkpoint.identity, "platform");
     uint64_t number = 0;
     std::from_chars(seed.data(), seed.data() + seed.size(), number);
     const auto [same, is_new] = files_by_seed.emplace(number, path);
@@ -50,6 +51,8 @@ struct Merged {
       return;
     }
     require_same_render(path, checkpoint.identity, identity);
+    if (more.film.width() != result->film.width() || more.film.height() != result->film.height())
+      throw Error(ErrorKind::input, path, {}, "is damaged: its picture is not of the size that it says");
     result->film.merge(more.film);
     result->samples += more.samples;
     result->seconds += more.seconds;
@@ -75,9 +78,9 @@ Metadata merged_metadata(const Merged& merged, const std::string& command_line) 
 }
 
 ExitCode run_merge(const MergeFlags& flags, const std::string& command_line) {
-  if (flags.inputs.size() < 2 || flags.output.empty())
-    throw Error(ErrorKind::usage,
-                "what with what? Give two checkpoints or more, and -o OUT.exr; see vernier merge --help");
+  if (flags.inputs.size() < 2)
+    throw Error(ErrorKind::usage, "missing CHECKPOINT: two or more are merged; see vernier merge --help");
+  if (flags.output.empty()) throw Error(ErrorKind::usage, "missing -o FILE (.exr); see vernier merge --help");
   if (is_display_file(flags.output))
     throw Error(ErrorKind::usage, {}, "-o", "a merged picture is scene-linear: name an .exr");
   const std::vector<Layer> chosen = find_film_layers(flags.layers);

@@ -11,14 +11,15 @@
 #include "apps/denoising.h"
 #include "apps/missing_text.h"
 #include "apps/notice_log.h"
+#include "apps/outputs.h"
 #include "apps/progress.h"
 #include "apps/render_options.h"
 #include "apps/render_report.h"
 #include "apps/report_page.h"
 #include "apps/scene_summary.h"
 #include "apps/stop_signals.h"
+#include "core/base/atomic_file.h"
 #include "core/base/parallel.h"
-#include "core/base/text_file.h"
 #include "core/image/display.h"
 #include "core/image/image_io.h"
 #include "integrators/visible_light.h"
@@ -91,18 +92,16 @@ std::optional<Denoised> denoise_if_asked(const RenderRequest& request, LayeredIm
   return denoised;
 }
 
-/// `picture` has the colour first and then the layers asked for, which only .exr files get.
-void write_pictures(const RenderRequest& request, const LayeredImage& picture, const Metadata& metadata) {
-  for (const auto& path : request.flags.outputs) {
-    if (is_display_file(path)) {
-      Metadata with_view = metadata;
-      with_view["vernier:exposure"] = fmt::format("{}", request.display.exposure);
-      with_view["vernier:view"] = request.display.view;
-      write_image8(path, to_display(picture.rgb(), request.display), with_view);
-    } else {
-      write_exr(path, picture.image, picture.channel_names, metadata);
-    }
+/// `picture` has the color first and then the layers asked for, which only .exr files get.
+void write_picture(const std::string& path, const RenderRequest& request, const LayeredImage& picture,
+                   Metadata metadata) {
+  if (!is_display_file(path)) {
+    write_exr(path, picture.image, picture.channel_names, metadata);
+    return;
   }
+  metadata["vernier:exposure"] = fmt::format("{}", request.display.exposure);
+  metadata["vernier:view"] = request.display.view;
+  write_image8(path, to_display(picture.rgb(), request.display), metadata);
 }
 
 /// The scene to render, and what the report says of it.
@@ -158,7 +157,7 @@ ExitCode run_render(const RenderFlags& flags, const std::string& command_line) {
       place_camera(chosen, flags.camera, scene.geometry(), asked_aspect(flags.size), log);
   report.camera = view.name;
   fill_in_size(report.options, view);
-  check_picture_size(report.options, request.layers);
+  check_picture_size(report.options, memory_use(request));
   if (shows_light(flags))
     report.surroundings = surround(scene, request.surroundings, view, report.options, log);
   log.add(scene.notices());
@@ -176,17 +175,22 @@ ExitCode run_render(const RenderFlags& flags, const std::string& command_line) {
   LayeredImage picture = with_layers(result.film, request.layers, scene, camera, report.options);
   Metadata metadata = image_metadata(report, flags, result);
   const auto denoised = denoise_if_asked(request, picture, metadata);
-  write_pictures(request, picture, metadata);
+  Outputs outputs;
+  for (const auto& path : flags.outputs)
+    if (outputs.attempt([&] { write_picture(path, request, picture, metadata); }))
+      report.files.push_back(path);
   report.output_seconds = watch.lap();
   auto stats = stats_json(report, flags, result, log);
   if (denoised) stats["denoised"] = denoised_json(*request.denoiser, denoised->error);
   checkpointing.add_to(stats);
-  if (!flags.stats.empty()) write_text_file(flags.stats, to_text(stats) + "\n");
+  if (!flags.stats.empty()) outputs.attempt([&] { write_file(flags.stats, to_text(stats) + "\n"); });
   if (!flags.report.empty())
-    write_text_file(flags.report, report_page(stats, result.film, denoised, request.display));
-  if (!flags.quiet) fmt::print("{}\n", summary_line(report, flags, result));
+    outputs.attempt(
+        [&] { write_file(flags.report, report_page(stats, result.film, denoised, request.display)); });
+  if (!flags.quiet) fmt::print("{}\n", summary_line(report, result));
   if (!flags.quiet && denoised) fmt::print("{}\n", denoised_text(*request.denoiser, denoised->error));
-  checkpointing.require_written();
+  outputs.attempt([&] { checkpointing.require_written(); });
+  if (outputs.have_failed()) return ExitCode::input;
   return result.reason == StopReason::interrupted ? ExitCode::stopped : ExitCode::done;
 }
 

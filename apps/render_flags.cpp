@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <charconv>
+#include <limits>
 
 #include "apps/flags.h"
 #include "core/base/error.h"
@@ -15,18 +15,10 @@
 namespace vernier::apps {
 namespace {
 
-/// A negative number would be taken for a large one.
-void parse_seed(const std::string& text) {
-  uint64_t seed = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-  if (error != std::errc{} || end != text.data() + text.size())
-    throw Error(ErrorKind::usage, fmt::format("'{}' is not a whole number from 0 to 2^64 - 1", text));
-}
-
 void add_quality_flags(CLI::App& command, RenderFlags& flags) {
   command.option_defaults()->group("Picture and effort");
   command.add_option("--spp", flags.spp, "samples a pixel on average (64 unless --time or --error is given)")
-      ->check(whole_number(1, 1 << 30))
+      ->transform(whole_number(1, 1 << 30))
       ->type_name("N");
   command.add_option("--time", flags.time, "stop rendering after this long: 90s, 10m, 1.5h")
       ->check(parsed_by(parse_seconds))
@@ -45,7 +37,7 @@ void add_quality_flags(CLI::App& command, RenderFlags& flags) {
       ->check(parsed_by(parse_pixel_rect))
       ->type_name("WxH+X+Y");
   command.add_option("--seed", flags.seed, "of the random numbers")
-      ->check(parsed_by(parse_seed))
+      ->transform(whole_number(0, std::numeric_limits<uint64_t>::max()))
       ->type_name("N")
       ->capture_default_str();
   add_threads_flag(command, flags.threads);
@@ -60,11 +52,11 @@ void add_integrator_flags(CLI::App& command, RenderFlags& flags) {
   command.add_option("--show", flags.show, "raycast: what to show; 'help' lists it")->type_name("NAME");
   add_max_depth_flag(command, flags);
   command.add_option("--ambient", options.ambient, "whitted: radiance that reaches everything")
-      ->check(real_number(0, 1e30))
+      ->transform(real_number(0, 1e30))
       ->type_name("L")
       ->capture_default_str();
   command.add_option("--cutoff", options.cutoff, "whitted: smallest contribution that is still traced")
-      ->check(real_number(0, 1e30))
+      ->transform(real_number(0, 1e30))
       ->type_name("X")
       ->capture_default_str();
   command.add_option("--accelerator", flags.accelerator, "ray query structure; 'help' lists them")
@@ -83,7 +75,7 @@ void add_output_flags(CLI::App& command, RenderFlags& flags) {
                   "filter the noise out before writing; 'help' lists the filters (docs/denoise.md)")
       ->type_name("FILTER");
   command.add_option("--exposure", flags.display.exposure, "stops, for PNG and JPEG")
-      ->check(real_number(-100, 100))
+      ->transform(real_number(-100, 100))
       ->type_name("EV");
   command.add_option("--view", flags.display.view, "display view for PNG and JPEG; 'help' lists them")
       ->type_name("NAME");
@@ -125,8 +117,10 @@ void add_adaptive_flag(CLI::App& command, RenderFlags& flags) {
 }
 
 void add_max_depth_flag(CLI::App& command, RenderFlags& flags) {
-  command.add_option("--max-depth", flags.integrator_options.max_depth, "path vertices after the camera")
-      ->check(whole_number(1, 65536))
+  command
+      .add_option("--max-depth", flags.integrator_options.max_depth,
+                  "path vertices after the camera (whitted: at most 20)")
+      ->transform(whole_number(1, 65536))
       ->type_name("N")
       ->capture_default_str();
 }

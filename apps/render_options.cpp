@@ -10,21 +10,14 @@
 
 #include "apps/denoising.h"
 #include "apps/flags.h"
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/names.h"
-#include "core/base/text_file.h"
 #include "core/image/image_io.h"
 #include "scene/accel/accelerator.h"
 
 namespace vernier::apps {
 namespace {
-
-/// Of the film (seven numbers of eight bytes a half), and the picture made from it.
-double bytes_per_pixel(std::span<const Layer> layers) {
-  int channels = 3;
-  for (const Layer& layer : layers) channels += layer.channel_count();
-  return Film::halves * 7 * sizeof(double) + double(channels) * sizeof(float);
-}
 
 /// Only OpenEXR holds more than a picture's colour. Denoising brings the layers that it uses.
 std::vector<Layer> choose_layers(const RenderFlags& flags) {
@@ -116,7 +109,21 @@ void require_separate_outputs(const RenderFlags& flags) {
 
 }  // namespace
 
-void check_picture_size(const RenderOptions& options, std::span<const Layer> layers) {
+MemoryUse memory_use(const RenderRequest& request) {
+  const RenderFlags& flags = request.flags;
+  MemoryUse use;
+  use.adaptive = request.options.adaptive;
+  for (const Layer& layer : request.layers) {
+    use.layer_channels += layer.channel_count();
+    use.error_layers = use.error_layers || layer.need == LayerNeed::error;
+  }
+  use.denoise = request.denoiser != nullptr;
+  use.display = std::any_of(flags.outputs.begin(), flags.outputs.end(), is_display_file);
+  use.report = !flags.report.empty();
+  return use;
+}
+
+void check_picture_size(const RenderOptions& options, const MemoryUse& use) {
   const Crop& crop = options.crop;
   if (crop.width > 0 && (crop.width > options.width - crop.x || crop.height > options.height - crop.y))
     throw Error(ErrorKind::usage,
@@ -124,20 +131,19 @@ void check_picture_size(const RenderOptions& options, std::span<const Layer> lay
                             crop.x, crop.y, options.width, options.height));
   const double pixels =
       crop.width > 0 ? double(crop.width) * crop.height : double(options.width) * options.height;
-  const double bytes = pixels * bytes_per_pixel(layers);
+  const double bytes = pixels * double(peak_bytes_per_pixel(use));
   const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
   if (bytes > memory)
-    throw Error(
-        ErrorKind::memory,
-        fmt::format("a picture of {} pixels needs {} of memory and there are {}; render parts with --crop",
-                    format_count(pixels), format_bytes(bytes), format_bytes(memory)));
+    throw Error(ErrorKind::memory,
+                fmt::format("a picture of {} pixels needs {} of memory beside the scene and there are {}; "
+                            "render parts with --crop",
+                            format_count(pixels), format_bytes(bytes), format_bytes(memory)));
 }
 
 RenderRequest check_render_flags(const RenderFlags& flags) {
   require_scene(flags.scene, "render");
   if (flags.outputs.empty())
-    throw Error(ErrorKind::usage,
-                "where to? Give -o FILE with .exr, .png or .jpg; see vernier render --help");
+    throw Error(ErrorKind::usage, "missing -o FILE (.exr, .png, .jpg); see vernier render --help");
   RenderRequest request;
   request.flags = flags;
   request.integrator = make_integrator(flags);
@@ -146,12 +152,12 @@ RenderRequest check_render_flags(const RenderFlags& flags) {
   request.progress = parse_progress(flags);
   request.layers = choose_layers(flags);
   if (!flags.denoise.empty()) request.denoiser = &find_denoiser(flags.denoise);
-  if (request.options.width > 0) check_picture_size(request.options, request.layers);
+  if (request.options.width > 0) check_picture_size(request.options, memory_use(request));
   request.display = choose_display(flags);
   require_separate_outputs(flags);
   for (const auto& path : flags.outputs) check_writable_image(path);
   for (const auto& path : {flags.stats, flags.report})
-    if (!path.empty()) check_writable_text_file(path);
+    if (!path.empty()) check_writable(path);
   request.surroundings = read_surroundings(flags.surroundings);
   return request;
 }

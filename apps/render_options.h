@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/render_flags.h"
+#include "apps/render_memory.h"
 #include "core/base/quantities.h"
 #include "core/image/denoise.h"
 #include "core/image/display.h"
@@ -32,9 +33,11 @@ struct RenderRequest {
 /// Checks names, sizes, outputs and reads the surroundings. Throws Error.
 RenderRequest check_render_flags(const RenderFlags& flags);
 
-/// Whether the crop lies in the picture, and the picture with its layers in memory. Throws Error(usage) or
+MemoryUse memory_use(const RenderRequest& request);
+
+/// Whether the crop lies in the picture, and what a render of it takes in memory. Throws Error(usage) or
 /// Error(memory).
-void check_picture_size(const RenderOptions& options, std::span<const Layer> layers);
+void check_picture_size(const RenderOptions& options, const MemoryUse& use);
 
 /// Whether a file is written as display values (PNG, JPEG) rather than scene-linear ones (EXR). By extension.
 bool is_display_file(const std::string& path);

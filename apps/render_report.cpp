@@ -55,7 +55,7 @@ Json picture_json(const RenderReport& report, const RenderFlags& flags, const Re
                   {"samples_per_pixel", samples_per_pixel(result)},
                   {"asked", asked_json(report.options)},
                   {"stopped_by", name(result.reason)},
-                  {"files", flags.outputs}};
+                  {"files", report.files}};
   if (report.options.crop.width > 0) picture["crop"] = crop_text(report.options.crop);
   return picture;
 }
@@ -153,6 +153,7 @@ Metadata image_metadata(const RenderReport& report, const RenderFlags& flags, co
       {"vernier:surroundings", report.surroundings.name},
       {"vernier:integrator", flags.integrator},
       {"vernier:accelerator", report.accelerator},
+      {"vernier:platform", platform()},
       {"vernier:seed", fmt::format("{}", flags.seed)},
       {"vernier:stoppedBy", std::string(name(result.reason))},
       {"vernier:size", fmt::format("{}x{}", report.options.width, report.options.height)},
@@ -207,10 +208,11 @@ std::string scene_lines(const RenderReport& report) {
                      format_bytes(double(peak_memory_bytes())));
 }
 
-std::string summary_line(const RenderReport& report, const RenderFlags& flags, const RenderResult& result) {
+std::string summary_line(const RenderReport& report, const RenderResult& result) {
   return fmt::format("wrote {}: {}x{}, {:.4g} spp{}, load {}, build {}, render {}, {} rays/s{}",
-                     fmt::join(flags.outputs, ", "), result.film.width(), result.film.height(),
-                     samples_per_pixel(result), error_text(result.error) + missing_text(result.missing),
+                     report.files.empty() ? "nothing" : fmt::format("{}", fmt::join(report.files, ", ")),
+                     result.film.width(), result.film.height(), samples_per_pixel(result),
+                     error_text(result.error) + missing_text(result.missing),
                      format_seconds(report.load_seconds), format_seconds(report.build_seconds),
                      format_seconds(result.seconds), format_count(rate(total(result.rays), result.seconds)),
                      shortfall(report, result));

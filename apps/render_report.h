@@ -22,6 +22,7 @@ struct RenderReport {
   AcceleratorStats accelerator_stats;
   RenderOptions options;
   unsigned threads = 0;
+  std::vector<std::string> files;    ///< pictures that have been written
   double load_seconds = 0;           ///< reading the scene and the environment
   double build_seconds = 0;          ///< from the description to a scene that answers rays
   double output_seconds = 0;         ///< display transform, encoding, writing
@@ -52,6 +53,6 @@ nlohmann::ordered_json stats_json(const RenderReport& report, const RenderFlags&
 std::string scene_lines(const RenderReport& report);
 
 /// "wrote out.exr: 1280x720, 64 spp, load 310 ms, build 100 ms, render 12.3 s, 5.10 M rays/s"
-std::string summary_line(const RenderReport& report, const RenderFlags& flags, const RenderResult& result);
+std::string summary_line(const RenderReport& report, const RenderResult& result);
 
 }  // namespace vernier::apps

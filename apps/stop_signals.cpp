@@ -1,20 +1,27 @@
 #include "apps/stop_signals.h"
 
+#include "core/base/atomic_file.h"
+
 namespace vernier::apps {
 namespace {
 
 std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
-void request_stop(int) {
-  stop_requested = true;
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+/// Ends the process by the signal that it handles, as if it had not been handled.
+void clean_up(int signal) {
+  AtomicFile::remove_unfinished();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
 }
 
-void install(int signal, struct sigaction& old) {
+void request_stop(int signal) {
+  if (stop_requested.exchange(true)) clean_up(signal);
+}
+
+void install(int signal, void (*handler)(int), struct sigaction& old) {
   struct sigaction action {};
-  action.sa_handler = request_stop;
+  action.sa_handler = handler;
   action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
   sigaction(signal, &action, &old);
@@ -23,10 +30,16 @@ void install(int signal, struct sigaction& old) {
 
 }  // namespace
 
+void install_cleanup_signals() {
+  struct sigaction old {};
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) install(signal, clean_up, old);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
 StopSignals::StopSignals() {
   stop_requested = false;
-  install(SIGINT, old_interrupt_);
-  install(SIGTERM, old_terminate_);
+  install(SIGINT, request_stop, old_interrupt_);
+  install(SIGTERM, request_stop, old_terminate_);
 }
 
 StopSignals::~StopSignals() {

@@ -5,8 +5,13 @@
 
 namespace vernier::apps {
 
-/// While it lives, the first SIGINT or SIGTERM only raises a flag; a second one ends the process at once. A
-/// signal that was ignored at the start (as in background jobs of a shell script) stays ignored.
+/// From here on SIGINT, SIGTERM and SIGHUP remove half-written files before they end the process, and writing
+/// past a limit on the size of files is an error instead of its end. A signal that is ignored stays so.
+void install_cleanup_signals();
+
+/// While it lives, the first SIGINT or SIGTERM only raises a flag; a second one ends the process at
+/// once, half-written files removed. A signal that was ignored at the start (as in background jobs of a shell
+/// script) stays ignored.
 class StopSignals {
  public:
   StopSignals();

@@ -9,11 +9,12 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "core/base/text_file.h"
-#include "scene/import/asset_files.h"
+#include "core/base/fingerprint.h"
 
 namespace vernier {
 namespace {
@@ -22,6 +23,7 @@ using Json = nlohmann::ordered_json;
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are little-endian");
 static_assert(sizeof(RenderResult::Look) == 6 * sizeof(double));
+static_assert(sizeof(TileLight) == 10 * sizeof(float));
 
 constexpr uint32_t format = 2;
 constexpr size_t fingerprint_length = 32;
@@ -35,10 +37,6 @@ struct Preamble {
   std::array<char, fingerprint_length> header_fingerprint{};  ///< hexadecimal, of the header
 };
 static_assert(sizeof(Preamble) == 16 + fingerprint_length);
-
-std::string fingerprint_of(std::span<const std::byte> bytes) {
-  return fingerprint({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
-}
 
 /// Constant bytes of constant values.
 template <typename Values>
@@ -87,8 +85,11 @@ Json header_of(const RenderIdentity& identity, const RenderState& state) {
 /// Reads a file from its beginning to its end.
 class Reader {
  public:
-  explicit Reader(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "rb")) {
+  explicit Reader(const std::string& path) : path_(path) {
     std::error_code error;
+    // Opening a pipe would wait for its writer.
+    if (std::filesystem::is_other(path, error)) refuse("is not a regular file");
+    file_.reset(std::fopen(path.c_str(), "rb"));
     if (file_) left_ = std::filesystem::file_size(path, error);
     if (!file_ || error)
       throw Error(ErrorKind::input, path, {},
@@ -103,8 +104,9 @@ class Reader {
     left_ -= bytes.size();
   }
   [[noreturn]] void damaged(const std::string& how) const {
+    // What the file holds is quoted in `how` and may be long.
     throw Error(ErrorKind::input, path_, {},
-                fmt::format("is damaged: {}; use another checkpoint or render without --resume", how));
+                fmt::format("is damaged: {:.200}; use another checkpoint or render without --resume", how));
   }
   [[noreturn]] void refuse(const std::string& reason) const {
     throw Error(ErrorKind::input, path_, {}, reason);
@@ -130,63 +132,112 @@ Json read_header(Reader& reader) {
   if (preamble.header_length > longest_header) reader.damaged("its header is too long");
   std::string text(preamble.header_length, ' ');
   reader.read(std::as_writable_bytes(std::span(text)));
-  if (fingerprint_of(std::as_bytes(std::span(text))) !=
+  if (fingerprint(std::as_bytes(std::span(text))) !=
       std::string_view(preamble.header_fingerprint.data(), fingerprint_length))
     reader.damaged("its header has changed");
   return Json::parse(text);
 }
 
-/// Sizes are checked against each other and the file before memory is taken for them.
+// Fingerprints tell damage, not malice: everything read below is checked before it is used or memory is taken
+// for it.
+
+/// A number of the header, at most `most`.
+uint64_t whole_number(const Reader& reader, const Json& value, const char* name,
+                      uint64_t most = std::numeric_limits<int64_t>::max()) {
+  if (!value.is_number_unsigned() || value.get<uint64_t>() > most)
+    reader.damaged(fmt::format("'{}' is not a whole number from 0 to {}", name, most));
+  return value.get<uint64_t>();
+}
+
+/// The state with its numbers, and its arrays still to be read into; `counts` are the plan's. Arrays have the
+/// sizes that follow from the numbers, the file says the same, and it is as long as all of them.
+std::shared_ptr<RenderState> allocate_state(const Reader& reader, const Json& header,
+                                            SamplePlan::Numbers& pass) {
+  constexpr uint64_t longest_side = 1 << 16;
+  const size_t width = whole_number(reader, header.at("width"), "width", longest_side);
+  const size_t height = whole_number(reader, header.at("height"), "height", longest_side);
+  if (width == 0 || height == 0) reader.damaged("its picture has no pixels");
+  const bool adaptive = header.at("adaptive").get<bool>();
+  const Json& pass_header = header.at("pass");
+  const uint32_t done = uint32_t(whole_number(reader, header.at("done"), "done", RenderState::most_samples));
+  pass.width = int(width);
+  // No pass more than doubles what is done.
+  pass.size = uint32_t(whole_number(reader, pass_header.at("size"), "size", std::max(2u, done)));
+  pass.odd_half = int(whole_number(reader, pass_header.at("odd_half"), "odd_half", Film::halves - 1));
+  pass.guiding = uint32_t(whole_number(reader, pass_header.at("guiding"), "guiding", pass.size));
+
+  const Json& arrays = header.at("arrays");
+  const auto bytes = [&](size_t array) {
+    return whole_number(reader, arrays.at(array).at("bytes"), "bytes");
+  };
+  const size_t pixels = width * height;
+  const size_t tiles = RenderState::tile_count(int(width), int(height));
+  const bool uneven = pass.size > 0 && bytes(5) > 0;
+  const std::array<size_t, 9> expected{pixels * Film::bytes_per_pixel(),
+                                       adaptive ? pixels * SampleGuide::bytes_per_pixel() : 0,
+                                       adaptive ? pixels * SampleGuide::bytes_per_pixel() : 0,
+                                       adaptive ? pixels * Film::halves * sizeof(uint32_t) : 0,
+                                       tiles * sizeof(TileLight),
+                                       uneven ? pixels * Film::halves * sizeof(uint16_t) : 0,
+                                       pass.size > 0 ? tiles * sizeof(uint32_t) : 0,
+                                       bytes(7) / sizeof(RenderResult::Look) * sizeof(RenderResult::Look),
+                                       bytes(8) / sizeof(BadSample) * sizeof(BadSample)};
+  uintmax_t total = 0;
+  for (size_t i = 0; i < expected.size(); ++i) {
+    if (bytes(i) != expected[i])
+      reader.damaged(fmt::format("array {} has {} bytes, expected {}", i, bytes(i), expected[i]));
+    if (expected[i] > reader.left() - total) reader.damaged("it is cut short");
+    total += expected[i];
+  }
+  if (arrays.size() != expected.size() || total != reader.left())
+    reader.damaged(fmt::format("{} bytes follow its header, expected {}", reader.left(), total));
+
+  auto state = std::make_shared<RenderState>(int(width), int(height), adaptive);
+  state->done = done;
+  for (size_t half = 0; half < Film::halves; ++half)
+    state->drawn.guiding[half] =
+        uint32_t(whole_number(reader, header.at("guiding").at(half), "guiding", RenderState::most_samples));
+  state->looked_at = uint32_t(whole_number(reader, header.at("looked_at"), "looked_at", done));
+  if (uneven) pass.counts.resize(pixels * Film::halves);
+  if (pass.size > 0) state->parts.resize(tiles);
+  state->so_far.convergence.resize(bytes(7) / sizeof(RenderResult::Look));
+  state->so_far.bad_sample_examples.resize(bytes(8) / sizeof(BadSample));
+  return state;
+}
+
+/// Totals of the header.
+void read_totals(const Reader& reader, const Json& header, RenderResult& so_far) {
+  so_far.samples = whole_number(reader, header.at("samples"), "samples");
+  so_far.bad_samples = whole_number(reader, header.at("bad_samples"), "bad_samples", so_far.samples);
+  const Json& rays = header.at("rays");
+  const auto count = [&](size_t i) { return whole_number(reader, rays.at(i), "rays"); };
+  so_far.rays = {count(0), count(1), count(2)};
+  const Json& seconds = header.at("seconds");
+  constexpr double longest = 1e10;  // three centuries
+  if (!seconds.is_number() || !(seconds.get<double>() >= 0 && seconds.get<double>() <= longest))
+    reader.damaged("'seconds' is not a duration");
+  so_far.seconds = seconds;
+}
+
 void read_state(Reader& reader, const Json& header, Checkpoint& checkpoint) {
   for (const Json& pair : header.at("render"))
     checkpoint.identity.emplace_back(pair.at(0).get<std::string>(), pair.at(1).get<std::string>());
-  const Json& arrays = header.at("arrays");
-  uintmax_t bytes = 0;
-  for (const Json& array : arrays) bytes += array.at("bytes").get<uint64_t>();
-  if (bytes != reader.left())
-    reader.damaged(fmt::format("{} bytes follow its header, expected {}", reader.left(), bytes));
-  const int width = header.at("width"), height = header.at("height");
-  constexpr int most = 1 << 16;
-  if (width < 1 || height < 1 || width > most || height > most ||
-      uintmax_t(width) * uintmax_t(height) > bytes)
-    reader.damaged("the size of its picture");
-
-  checkpoint.state = std::make_shared<RenderState>(width, height, header.at("adaptive").get<bool>());
-  RenderState& state = *checkpoint.state;
-  RenderResult& so_far = state.so_far;
-  state.done = header.at("done");
-  header.at("guiding").get_to(state.drawn.guiding);
-  state.looked_at = header.at("looked_at");
-  so_far.seconds = header.at("seconds");
-  so_far.samples = header.at("samples");
-  const Json& rays = header.at("rays");
-  so_far.rays = {rays.at(0), rays.at(1), rays.at(2)};
-  so_far.bad_samples = header.at("bad_samples");
-
   SamplePlan::Numbers pass;
-  const Json& pass_header = header.at("pass");
-  pass.width = width;
-  pass.size = pass_header.at("size");
-  pass.odd_half = pass_header.at("odd_half");
-  pass.guiding = pass_header.at("guiding");
-  const auto count = [&](size_t array, size_t element) {
-    return arrays.at(array).at("bytes").get<uint64_t>() / element;
-  };
-  if (count(5, sizeof(uint16_t)) > 0) pass.counts.resize(state.drawn.extra.size());
-  if (pass.size > 0) state.parts.resize(size_t(state.tile_count()));
-  so_far.convergence.resize(count(7, sizeof(RenderResult::Look)));
-  so_far.bad_sample_examples.resize(count(8, sizeof(BadSample)));
-
+  checkpoint.state = allocate_state(reader, header, pass);
+  RenderState& state = *checkpoint.state;
+  read_totals(reader, header, state.so_far);
+  const Json& arrays = header.at("arrays");
   size_t i = 0;
   for_each_array(state, pass.counts, [&](const char* name, std::span<std::byte> array) {
     const Json& described = arrays.at(i++);
-    if (described.at("name") != name || described.at("bytes") != array.size())
-      reader.damaged(fmt::format("its '{}' has not the size that this build gives it", name));
+    if (described.at("name") != name) reader.damaged(fmt::format("it has no '{}' in its place", name));
     reader.read(array);
-    if (described.at("fingerprint") != fingerprint_of(array))
+    if (described.at("fingerprint") != fingerprint(array))
       reader.damaged(fmt::format("its '{}' has changed", name));
   });
   state.pass = SamplePlan(std::move(pass));
+  if (const char* part = implausible_part(state))
+    reader.damaged(fmt::format("its '{}' holds values that no render has", part));
 }
 
 }  // namespace
@@ -196,16 +247,16 @@ void write_checkpoint(const std::string& path, const RenderIdentity& identity, c
   std::vector<std::span<const std::byte>> parts(2);
   for_each_array(state, state.pass.numbers().counts, [&](const char* name, std::span<const std::byte> array) {
     header["arrays"].push_back(
-        {{"name", name}, {"bytes", array.size()}, {"fingerprint", fingerprint_of(array)}});
+        {{"name", name}, {"bytes", array.size()}, {"fingerprint", fingerprint(array)}});
     parts.push_back(array);
   });
   const std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
   Preamble preamble;
   preamble.header_length = uint32_t(text.size());
-  fingerprint_of(std::as_bytes(std::span(text))).copy(preamble.header_fingerprint.data(), fingerprint_length);
+  fingerprint(std::as_bytes(std::span(text))).copy(preamble.header_fingerprint.data(), fingerprint_length);
   parts[0] = std::as_bytes(std::span(&preamble, 1));
   parts[1] = std::as_bytes(std::span(text));
-  write_file_safely(path, parts);
+  write_file(path, parts);
 }
 
 Checkpoint read_checkpoint(const std::string& path) {
@@ -241,7 +292,7 @@ void require_same_render(const std::string& path, const RenderIdentity& checkpoi
   std::string differences;
   for (const auto& [name, any] : all)
     if (value(checkpoint, name) != value(wanted, name))
-      differences += fmt::format("{}{} was {}, is {}", differences.empty() ? "" : "; ", name,
+      differences += fmt::format("{}{:.100} was {:.100}, is {:.100}", differences.empty() ? "" : "; ", name,
                                  value(checkpoint, name), value(wanted, name));
   if (!differences.empty())
     throw Error(ErrorKind::input, path, {}, fmt::format("is of another render: {}", differences));

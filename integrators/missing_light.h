@@ -11,12 +11,15 @@ namespace vernier {
 struct TileLight {
   Rgb found{0, 0, 0};
   MissingLight missing;
-  uint64_t samples = 0;
+  uint32_t samples = 0;
 
   void add(const Estimate& estimate) {
     found += estimate.radiance;
     missing += estimate.missing;
     ++samples;
+  }
+  bool is_plausible() const {
+    return is_finite(found) && is_finite(missing.bent) && is_finite(missing.depth);
   }
   TileLight& operator+=(const TileLight& other) {
     found += other.found;

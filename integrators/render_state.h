@@ -15,6 +15,9 @@ namespace vernier {
 struct RenderState {
   static constexpr int tile_size = 16;  ///< pixels a side of what is rendered without looking up
 
+  /// More samples a pixel than any render takes, and few enough for an int to hold twice as many.
+  static constexpr uint32_t most_samples = 1 << 30;
+
   /// Of a picture, or crop, of which nothing is rendered yet.
   RenderState(int width, int height, bool adaptive)
       : so_far(Film(width, height)),
@@ -22,8 +25,23 @@ struct RenderState {
         drawn{{}, std::vector<uint32_t>(adaptive ? size_t(width) * height * Film::halves : 0)},
         light(size_t(tile_count())) {}
 
+  /// Of a picture, or crop, of this size.
+  static int tile_count(int width, int height) {
+    return ((width + tile_size - 1) / tile_size) * ((height + tile_size - 1) / tile_size);
+  }
   int tile_columns() const { return (so_far.film.width() + tile_size - 1) / tile_size; }
-  int tile_count() const { return tile_columns() * ((so_far.film.height() + tile_size - 1) / tile_size); }
+  int tile_count() const { return tile_count(so_far.film.width(), so_far.film.height()); }
+
+  static constexpr size_t bytes_per_pixel(bool adaptive) {
+    const size_t guiding =
+        Film::halves * (SampleGuide::bytes_per_pixel() + sizeof(uint16_t));  // and the plan
+    return Film::bytes_per_pixel() + Film::halves * sizeof(uint32_t) + (adaptive ? guiding : 0);
+  }
+  /// Whether a render of a picture, or crop, of this size can go on from it.
+  bool fits(int width, int height, bool adaptive) const {
+    return so_far.film.width() == width && so_far.film.height() == height &&
+           guides[0].bytes().empty() == !adaptive;
+  }
 
   RenderResult so_far;                           ///< `reason` and `error` are not known yet
   std::array<SampleGuide, Film::halves> guides;  ///< empty without adaptive sampling
@@ -34,5 +52,9 @@ struct RenderState {
   SamplePlan pass;                               ///< the one that is under way; of no samples: none is
   std::vector<uint32_t> parts;                   ///< how much of it each tile has done, in samples a pixel
 };
+
+/// The name of a part of a state, as checkpoints call it, whose values no render can have led to and which
+/// might be indexed out of bounds, never come to an end, or give undefined numbers; null where there is none.
+const char* implausible_part(const RenderState& state);
 
 }  // namespace vernier

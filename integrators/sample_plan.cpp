@@ -1,6 +1,8 @@
 #include "integrators/sample_plan.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/base/parallel.h"
 
@@ -29,6 +31,10 @@ class HalfPlan {
     const double all = needy > 0 ? (budget_ - calm * least_) / double(needy) : 0;
     most_ = std::min(std::clamp(all, size * 4.0, size * 32.0), most_countable);
     calm_ = calm > 0 ? std::max(least_, (budget_ - double(needy) * most_) / calm) : least_;
+  }
+
+  static constexpr size_t bytes_per_pixel() {
+    return sizeof(decltype(needs_)::value_type) + sizeof(decltype(done_)::value_type);
   }
 
   /// Sets this half's counts, on average half of `size`.
@@ -87,7 +93,15 @@ float SampleGuide::squared_need(const Cell& cell) {
     const float variance = std::max(0.f, cell.sum_of_squares[c] - cell.sum[c] * mean) / (n - 1);
     relative += variance / (mean * mean + 0.01f);
   }
-  return relative;
+  return std::isfinite(relative) ? relative : 0;  // squares of very bright samples are beyond float
+}
+
+bool SampleGuide::is_plausible() const {
+  return std::all_of(cells_.begin(), cells_.end(), [](const Cell& cell) {
+    bool plausible = true;
+    for (int c = 0; c < 3; ++c) plausible = plausible && cell.sum[c] >= 0 && cell.sum_of_squares[c] >= 0;
+    return plausible;
+  });
 }
 
 std::vector<float> SampleGuide::needs() const {
@@ -106,6 +120,8 @@ std::vector<float> SampleGuide::needs() const {
   });
   return smooth;
 }
+
+size_t SamplePlan::planning_bytes_per_pixel() { return Film::halves * HalfPlan::bytes_per_pixel(); }
 
 SamplePlan SamplePlan::uniform(const SamplesDrawn& drawn, uint32_t size) {
   Numbers plan;

@@ -62,6 +62,9 @@ class SampleGuide {
   /// All that is known, to be stored and read back on the same kind of machine.
   std::span<const std::byte> bytes() const { return std::as_bytes(std::span(cells_)); }
   std::span<std::byte> bytes() { return std::as_writable_bytes(std::span(cells_)); }
+  static constexpr size_t bytes_per_pixel() { return sizeof(Cell); }
+  /// Whether add() can have led to these sums, which may have overflown; false only of damaged bytes.
+  bool is_plausible() const;
 
  private:
   struct Cell {
@@ -105,6 +108,9 @@ class SamplePlan {
   /// Image Synthesis"). So what pixels in need cannot take goes to the others, evenly.
   static SamplePlan adaptive(const SamplesDrawn& drawn, std::span<const SampleGuide, Film::halves> guides,
                              uint32_t size);
+
+  /// What adaptive() takes beside its result while it runs.
+  static size_t planning_bytes_per_pixel();
 
   /// Samples a pixel on average; 0: nothing is planned.
   uint32_t size() const { return numbers_.size; }

@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include "core/base/error.h"
 #include "integrators/transport.h"
 
 namespace vernier {
@@ -8,7 +11,13 @@ namespace {
 /// punctual light is evaluated; of area lights and the environment one is sampled.
 class WhittedIntegrator : public Integrator {
  public:
-  explicit WhittedIntegrator(const IntegratorOptions& options) : options_(options) {}
+  explicit WhittedIntegrator(const IntegratorOptions& options) : options_(options) {
+    if (options.max_depth > deepest)
+      throw Error(ErrorKind::usage, {}, "--max-depth",
+                  fmt::format("whitted follows at most {} path vertices, for at each one ray may become two; "
+                              "use --integrator path",
+                              deepest));
+  }
 
   Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler) const override {
     Walk walk{scene, sampler, {}, 0};
@@ -21,6 +30,9 @@ class WhittedIntegrator : public Integrator {
   }
 
  private:
+  /// Two to this power is how many rays one of the camera may become.
+  static constexpr int deepest = 20;
+
   /// Lobes up to this width are followed as if they were perfect mirrors; wider ones show highlights only.
   static constexpr float sharp_alpha = 0.1f;
 

@@ -39,8 +39,8 @@ struct Dielectric {
   const Dispersion* dispersion = nullptr;  ///< indices of the three colours, if they differ
 
   BsdfEval eval(const Vec3f& wo, const Vec3f& wi) const {
-    if (is_delta()) return {};
     if (dispersion) return eval_dispersed(wo, wi);
+    if (is_delta()) return {};
     BsdfEval value = single_scattering(wo, wi);
     if (value.pdf > 0) value.f_cos /= single_albedo(wo);
     return value;
@@ -203,10 +203,12 @@ struct Dielectric {
       sample->weight[chosen] = 3 * weight;
       sample->pdf /= 3;
     } else {
-      Rgb reflected;
+      Rgb reflected(0, 0, 0);
       float prob = 0;
       for (int c = 0; c < 3; ++c) {
-        const Split split = of_channel(c).boundary(wo.z);
+        const Dielectric channel = of_channel(c);
+        if (!channel.is_delta()) continue;  // a rough boundary of another index, whose lobe eval() knows
+        const Split split = channel.boundary(wo.z);
         reflected[c] = split.reflected[c];
         prob += split.prob / 3;
       }

@@ -178,6 +178,16 @@ Image pixel_errors(const Image& variance, const Image& weights, double rel_rmse)
 
 std::span<const Denoiser> denoisers() { return table; }
 
+size_t denoise_bytes_per_pixel() {
+  constexpr size_t image = 3 * sizeof(float);
+  constexpr size_t given =
+      4 + 4 + 2 * 4;  // a NoisyImage, the halves with their spreads, each half's NoisyImage
+  constexpr size_t guided = 1 + 1 + 2 + 1;     // color, variance, features and modulation of a GuidedImage
+  constexpr size_t filtering = 1 + 1 + 2 + 1;  // its color, variance and features as planes, and the result
+  constexpr size_t filtered = 1;               // the other half
+  return (given + guided + filtering + filtered) * image;
+}
+
 const Denoiser& find_denoiser(std::string_view name) {
 #ifndef VERNIER_OIDN
   if (name == "oidn")

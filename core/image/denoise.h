@@ -29,6 +29,10 @@ struct Denoiser {
   bool learned = false;
 };
 
+/// Memory that filtering a picture with all its layers and its two halves takes while it runs, beside the
+/// picture: the most of any filter of ours. A network takes what its library says.
+size_t denoise_bytes_per_pixel();
+
 /// All denoisers of this build (core/image/denoise.cpp).
 std::span<const Denoiser> denoisers();
 

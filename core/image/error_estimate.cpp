@@ -79,6 +79,8 @@ void RowSums::add_pixel(const Film& film, const PixelEvidence& evidence, int x, 
 
 }  // namespace
 
+size_t estimate_error_bytes_per_pixel() { return gather_evidence_bytes_per_pixel(); }
+
 ErrorEstimate estimate_error(const Film& film) {
   const PixelEvidence evidence = gather_evidence(film);
   std::vector<RowSums> rows(size_t(film.height()));

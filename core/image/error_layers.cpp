@@ -36,6 +36,8 @@ class Channel {
     });
   }
 
+  static constexpr size_t bytes_per_pixel() { return sizeof(Facts); }
+
   /// Variance of the pixel's value. The model knows only spreads of samples: what stratification gains, the
   /// differences of the halves say, over the pixels alike in brightness and variance. (An edge of a lamp is
   /// bright, varied and gains much, the wall beside it is none of these.) A firefly's difference says nothing
@@ -121,6 +123,11 @@ class Channel {
 };
 
 }  // namespace
+
+size_t error_layers_bytes_per_pixel() {
+  const size_t evidence = 4 * sizeof(float), result = 3 * sizeof(float);
+  return std::max(gather_evidence_bytes_per_pixel(), evidence + result + Channel::bytes_per_pixel());
+}
 
 ErrorLayers error_layers(const Film& film) {
   PixelEvidence evidence = gather_evidence(film);

@@ -1,5 +1,8 @@
 #include "core/image/film.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace vernier {
 
 void Film::merge(const Film& other) {
@@ -11,6 +14,16 @@ void Film::merge(const Film& other) {
     cell.count += more.count;
     cell.largest = std::max(cell.largest, more.largest);
   }
+}
+
+bool Film::is_plausible() const {
+  const auto is_sum = [](double value) { return value >= 0 && std::isfinite(value); };
+  return std::all_of(cells_.begin(), cells_.end(), [&](const Cell& cell) {
+    bool plausible = is_sum(cell.largest) && cell.count <= uint32_t{1} << 30;
+    for (int c = 0; c < 3; ++c)
+      plausible = plausible && is_sum(cell.sum[c]) && is_sum(cell.sum_of_squares[c]);
+    return plausible;
+  });
 }
 
 Vec3d Film::half_mean(int x, int y, int half) const {

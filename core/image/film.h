@@ -62,6 +62,9 @@ class Film {
   /// machine.
   std::span<const std::byte> bytes() const { return std::as_bytes(std::span(cells_)); }
   std::span<std::byte> bytes() { return std::as_writable_bytes(std::span(cells_)); }
+  static constexpr size_t bytes_per_pixel() { return halves * sizeof(Cell); }
+  /// Whether add() can have led to these sums; false only of damaged bytes.
+  bool is_plausible() const;
 
  private:
   struct Cell {

@@ -68,8 +68,8 @@ PartialImage8 decode_partial_image8(std::span<const uint8_t> bytes, const std::s
 Image8 decode_image8(std::span<const uint8_t> bytes, const std::string& name, const ImageLimits& limits = {});
 
 /// Writes float channels as OpenEXR with ZIP compression. `channel_names` has image.channels entries ("R",
-/// "G", "B", "albedo.R", ...). Written to a temporary file beside `path` and renamed, so that `path` is never
-/// half-written; throws Error(output) and leaves nothing.
+/// "G", "B", "albedo.R", ...). Replaces `path` wholly or not at all (core/base/atomic_file.h). Throws
+/// Error(output).
 void write_exr(const std::string& path, const Image& image, const std::vector<std::string>& channel_names,
                const Metadata& metadata);
 

@@ -1,16 +1,14 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <atomic>
+#include <algorithm>
+#include <array>
 #include <cctype>
-#include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/image/image_io.h"
 
@@ -23,50 +21,38 @@ Error output_error(const std::string& file, const std::string& problem) {
   return Error(ErrorKind::output, file, {}, problem);
 }
 
-// A new empty file in the folder of `path`, removed at the end unless it was given its final name. A process
-// that is killed leaves at most this file, never a partial one called `path`.
-class TemporaryFile {
+/// Lets OpenImageIO write into an AtomicFile, so that no library sees its name and the system's reason for a
+/// failure is kept.
+class AtomicFileProxy : public OIIO::Filesystem::IOProxy {
  public:
-  explicit TemporaryFile(const std::string& path) : final_(fs::path(path)) {
-    std::error_code error;
-    // Through a symbolic link the file it points to is replaced, not the link.
-    if (fs::is_symlink(final_, error)) final_ = fs::weakly_canonical(final_, error);
-    static std::atomic<unsigned> counter{0};
-    int descriptor = -1;
-    do {
-      const std::string name =
-          ".vernier-" + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".tmp";
-      temporary_ = final_.parent_path() / name;
-      descriptor = ::open(temporary_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
-    } while (descriptor < 0 && errno == EEXIST);
-    if (descriptor < 0) throw output_error(path, fmt::format("cannot write image: {}", std::strerror(errno)));
-    ::close(descriptor);
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() {
-    if (!temporary_.empty()) ::unlink(temporary_.c_str());
-  }
+  AtomicFileProxy(const std::string& name, AtomicFile& file) : IOProxy(name, Write), file_(file) {}
 
-  std::string path() const { return temporary_.string(); }
-
-  void give_final_name() {
-    if (::rename(temporary_.c_str(), final_.c_str()) != 0)
-      throw output_error(final_.string(), fmt::format("cannot replace file: {}", std::strerror(errno)));
-    temporary_.clear();
+  const char* proxytype() const override { return "vernier"; }
+  size_t write(const void* data, size_t size) override {
+    const size_t written = pwrite(data, size, m_pos);
+    m_pos += int64_t(written);
+    return written;
   }
+  size_t pwrite(const void* data, size_t size, int64_t offset) override {
+    if (!file_.write_at({static_cast<const std::byte*>(data), size}, uint64_t(offset))) return 0;
+    size_ = std::max(size_, size_t(offset) + size);
+    return size;
+  }
+  size_t size() const override { return size_; }
 
  private:
-  fs::path final_, temporary_;
+  AtomicFile& file_;
+  size_t size_ = 0;
 };
 
-void write_image(const std::string& path, const std::string& target, const char* format,
-                 const OIIO::ImageSpec& spec, const void* pixels, OIIO::Filesystem::IOProxy* proxy) {
+void write_image(const std::string& path, const char* format, const OIIO::ImageSpec& spec, const void* pixels,
+                 OIIO::Filesystem::IOProxy& proxy) {
   const auto output = OIIO::ImageOutput::create(format);
   if (!output)
     throw output_error(path, fmt::format("this OpenImageIO cannot write {}: {}", format, OIIO::geterror()));
-  if (proxy) output->set_ioproxy(proxy);
-  if (!output->open(target, spec) || !output->write_image(spec.format, pixels) || !output->close())
+  output->set_ioproxy(&proxy);
+  if (!output->open(fmt::format("picture.{}", format), spec) || !output->write_image(spec.format, pixels) ||
+      !output->close())
     throw output_error(path, fmt::format("cannot write image: {}", output->geterror()));
 }
 
@@ -94,19 +80,8 @@ std::vector<unsigned char> encode_image8(const std::string& path, const char* fo
   set_metadata(spec, metadata, jpeg);
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
-  write_image(path, fmt::format("memory.{}", format), format, spec, image.values.data(), &memory);
+  write_image(path, format, spec, image.values.data(), memory);
   return bytes;
-}
-
-void write_bytes(const std::string& path, const std::string& target,
-                 const std::vector<unsigned char>& bytes) {
-  std::FILE* file = std::fopen(target.c_str(), "wb");
-  const bool written = file && std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  const int write_error = errno;
-  const bool closed = file && std::fclose(file) == 0;
-  if (!written || !closed)
-    throw output_error(path,
-                       fmt::format("cannot write image: {}", std::strerror(written ? errno : write_error)));
 }
 
 // OpenImageIO's name of the format that a path's extension asks for; null when it is none of ours.
@@ -136,9 +111,14 @@ void write_exr(const std::string& path, const Image& image, const std::vector<st
   // An empty date is left out; without it OpenImageIO writes the time of day, and no two files are alike.
   spec.attribute("DateTime", "");
   set_metadata(spec, metadata, false);
-  TemporaryFile file(path);
-  write_image(path, file.path(), "openexr", spec, image.values.data(), nullptr);
-  file.give_final_name();
+  AtomicFile file(path);
+  AtomicFileProxy proxy(path, file);
+  try {
+    write_image(path, "openexr", spec, image.values.data(), proxy);
+  } catch (const Error&) {
+    if (!file.has_failed()) throw;  // else commit() knows more than the library does
+  }
+  file.commit();
 }
 
 void write_image8(const std::string& path, const Image8& image, const Metadata& metadata) {
@@ -146,9 +126,8 @@ void write_image8(const std::string& path, const Image8& image, const Metadata& 
   if (!format || std::strcmp(format, "openexr") == 0)
     throw output_error(path, "cannot write 8-bit values to this kind of file; use .png or .jpg");
   const std::vector<unsigned char> bytes = encode_image8(path, format, image, metadata);
-  TemporaryFile file(path);
-  write_bytes(path, file.path(), bytes);
-  file.give_final_name();
+  const std::array parts{std::as_bytes(std::span(bytes))};
+  write_file(path, parts);
 }
 
 std::vector<unsigned char> encode_png(const Image8& image) {
@@ -158,18 +137,7 @@ std::vector<unsigned char> encode_png(const Image8& image) {
 void check_writable_image(const std::string& path) {
   if (!format_of(path))
     throw output_error(path, "cannot write this kind of image; end the name in .exr, .png or .jpg");
-  std::error_code error;
-  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
-  if (!fs::exists(folder, error))
-    throw output_error(path, fmt::format("folder '{}' does not exist; create it first", folder.string()));
-  if (!fs::is_directory(folder, error))
-    throw output_error(path, fmt::format("'{}' is not a folder", folder.string()));
-  if (fs::is_directory(path, error)) throw output_error(path, "is a folder; name a file in it");
-  if (::access(folder.c_str(), W_OK | X_OK) != 0)
-    throw output_error(path,
-                       fmt::format("cannot write in folder '{}': {}", folder.string(), std::strerror(errno)));
-  if (fs::exists(path, error) && ::access(path.c_str(), W_OK) != 0)
-    throw output_error(path, fmt::format("cannot replace the file: {}", std::strerror(errno)));
+  check_writable(path);
 }
 
 }  // namespace vernier

@@ -52,6 +52,11 @@ Vec3d independent_variance(const Film& film, int x, int y) {
   return (film.half_mean_variance(x, y, 0) + film.half_mean_variance(x, y, 1)) / 4.0;
 }
 
+size_t gather_evidence_bytes_per_pixel() {
+  return (3 + 1) * sizeof(float)     // the result
+         + (1 + 1) * sizeof(float);  // log_variance and surprising
+}
+
 PixelEvidence gather_evidence(const Film& film) {
   const int width = film.width(), height = film.height();
   PixelEvidence evidence{Image(width, height, 3), Image(width, height, 1)};

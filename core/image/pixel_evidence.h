@@ -21,5 +21,7 @@ struct PixelEvidence {
   Image unreliable;
 };
 PixelEvidence gather_evidence(const Film& film);
+/// Memory that it takes while it runs, the result included.
+size_t gather_evidence_bytes_per_pixel();
 
 }  // namespace vernier

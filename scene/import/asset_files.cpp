@@ -1,6 +1,5 @@
 #include "scene/import/asset_files.h"
 
-#include <OpenImageIO/hash.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -130,12 +129,6 @@ AssetContent AssetFiles::read_reference(const std::string& uri, const std::strin
   const std::string problem = read_regular_file(path, O_NOFOLLOW, content.bytes);
   if (!problem.empty()) content.problem = fmt::format("{} cannot be read: {}", quoted, problem);
   return content;
-}
-
-std::string fingerprint(std::span<const uint8_t> bytes) {
-  const auto hash = OIIO::farmhash::Fingerprint128(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  return fmt::format("{:016x}{:016x}", OIIO::farmhash::Uint128High64(hash),
-                     OIIO::farmhash::Uint128Low64(hash));
 }
 
 }  // namespace vernier

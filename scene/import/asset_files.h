@@ -47,7 +47,4 @@ class AssetFiles {
   bool allow_outside_ = false;
 };
 
-/// 128-bit fingerprint as 32 hexadecimal digits; the same on every machine, not meant against forgery.
-std::string fingerprint(std::span<const uint8_t> bytes);
-
 }  // namespace vernier

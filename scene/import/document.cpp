@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/fingerprint.h"
 #include "scene/import/container.h"
 #include "scene/import/features.h"
 #include "scene/import/json_text.h"

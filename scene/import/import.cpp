@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/base/fingerprint.h"
 #include "core/base/parallel.h"
 #include "scene/import/cameras_lights.h"
 #include "scene/import/features.h"

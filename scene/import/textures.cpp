@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/fingerprint.h"
 #include "core/image/image_io.h"
 #include "scene/import/data_uri.h"
 #include "scene/import/ordered_parallel.h"

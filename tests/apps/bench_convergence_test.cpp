@@ -104,8 +104,8 @@ TEST(BenchConvergence, MisuseIsOneClearLine) {
     EXPECT_TRUE(folder.names().empty());
   };
   const std::string out = folder.file("out");
-  refused({"--out", out}, "which scenes?");
-  refused({cornell_box}, "where to?");
+  refused({"--out", out}, "missing SCENES");
+  refused({cornell_box}, "missing --out DIR");
   refused({cornell_box, "--out", out, "--integrator", "pth"}, "did you mean 'path'?");
   refused({cornell_box, "--out", out, "--times", "1,soon"}, "'soon' is not a duration");
   refused({cornell_box, cornell_box, "--out", out, "--reference", "a.exr"}, "2 scenes and 1 references");

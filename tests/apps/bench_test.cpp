@@ -116,7 +116,7 @@ TEST(Bench, MisuseIsOneLineAndNothingIsWritten) {
   expect_error({"bench"}, usage, "vernier bench --help");
   expect_error({"bench", "ray", cornell_box}, usage, "rays");
   expect_error({"bench", "stability", "--cases", "edge"}, usage, "edge-1");
-  expect_error({"bench", "rays"}, usage, "which scene?");
+  expect_error({"bench", "rays"}, usage, "missing SCENE");
   expect_error({"bench", "bias", "--share", "0"}, usage, "--share");
   expect_error({"bench", "rays", cornell_box, "--accelerator", "bhv"}, usage, "bvh");
   expect_error({"bench", "rays", folder.file("none.glb"), "--json", folder.file("x.json")}, input,

@@ -88,11 +88,11 @@ TEST(CommandLine, WhatIsReadIsNotOverwritten) {
 }
 
 TEST(CommandLine, NamesWhatIsMissing) {
-  expect_refused(run_vernier({}), 2, "which command?");
+  expect_refused(run_vernier({}), 2, "missing COMMAND");
   expect_refused(run_vernier({"rendr"}), 2, "unknown command 'rendr'; did you mean 'render'?");
-  expect_refused(run_vernier({"render"}), 2, "which scene?");
-  expect_refused(run_vernier({"render", cornell_box}), 2, "-o FILE");
-  expect_refused(run_vernier({"info"}), 2, "which scene?");
+  expect_refused(run_vernier({"render"}), 2, "missing SCENE (.gltf, .glb)");
+  expect_refused(run_vernier({"render", cornell_box}), 2, "missing -o FILE (.exr, .png, .jpg)");
+  expect_refused(run_vernier({"info"}), 2, "missing SCENE (.gltf, .glb)");
   expect_refused(run_vernier({"info", cornell_box, "--jsn"}), 2, "did you mean '--json'?");
 }
 

@@ -148,18 +148,19 @@ TEST_F(Compare, UsageErrors) {
   write_exr(folder_.file("c.exr"), Image(3, 4, 3), {"R", "G", "B"}, {});
   write_image8(folder_.file("a.png"), Image8(4, 3, 3), {});
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
-      {{}, "which pictures"},
-      {{a_}, "which pictures"},
+      {{}, "missing X or R"},
+      {{a_}, "missing X or R"},
       {{a_, b_, "--fail", "rmse"}, "METRIC>NUMBER"},
       {{a_, b_, "--fail", "rmse>x"}, "METRIC>NUMBER"},
       {{a_, b_, "--fail", "rmse>1x"}, "METRIC>NUMBER"},
+      {{a_, b_, "--fail", "rmse>nan"}, "METRIC>NUMBER"},
       {{a_, b_, "--fail", "rmsee>1"}, "did you mean 'rmse'"},
       {{a_, folder_.file("c.exr")}, "4x3 and 3x4"},
       {{a_, folder_.file("a.png")}, "linear light"},
       {{a_, b_, "--fail", "differing>0"}, "no error layer"},
       {{a_, b_, "--no-flip", "--fail", "flip>0"}, "--no-flip was given"},
       {{a_, b_, "--no-flip", "--heatmap", "x.png"}, "drop one"},
-      {{a_, b_, "--bias-level", "2"}, "between 0 and 1"},
+      {{a_, b_, "--bias-level", "2"}, "--bias-level: '2' is not a number from"},
   };
   for (const auto& [arguments, text] : cases) {
     const ProcessResult result = compare(arguments);

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <csignal>
 #include <nlohmann/json.hpp>
 
@@ -68,6 +69,40 @@ TEST_F(ResumeCommand, AnotherBuildIsToldOf) {
   EXPECT_THAT(other.err, HasSubstr("warning: " + ckpt_ + " was written by another build"));
 }
 
+TEST_F(ResumeCommand, AnotherPlatformIsToldOf) {
+  ASSERT_EQ(render("a.exr", {"--spp", "4", "--checkpoint", ckpt_, "-q"}).exit_code, 0);
+  Checkpoint checkpoint = read_checkpoint(ckpt_);
+  const std::string here = take(checkpoint.identity, "platform");
+  EXPECT_THAT(here, HasSubstr(", glibc "));
+  checkpoint.identity.emplace_back("platform", "another");
+  write_checkpoint(ckpt_, checkpoint.identity, *checkpoint.state);
+  const ProcessResult other = render("a.exr", {"--spp", "5", "--resume", ckpt_, "--progress", "none"});
+  EXPECT_EQ(other.exit_code, 0) << other.err;
+  EXPECT_EQ(other.err_lines().size(), 2u) << other.err;
+  EXPECT_THAT(other.err, HasSubstr("written on another platform (another; this is " + here + ")"));
+}
+
+// What a checkpoint says of itself in its header is checked against what it holds.
+TEST_F(ResumeCommand, ACheckpointOfAnotherSizeThanItSays) {
+  ASSERT_EQ(render("a.exr", {"--spp", "2", "--checkpoint", ckpt_, "-q"}).exit_code, 0);
+  Checkpoint checkpoint = read_checkpoint(ckpt_);
+  for (const bool adaptive : {true, false}) {
+    write_checkpoint(ckpt_, checkpoint.identity,
+                     RenderState(adaptive ? 16 : 64, adaptive ? 16 : 64, adaptive));
+    const ProcessResult result = render("b.exr", {"--spp", "4", "--resume", ckpt_, "-q"});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_THAT(result.err, HasSubstr("is damaged: what it holds is not of the size that it says"));
+  }
+  const std::string other = folder_.file("b.ckpt");
+  ASSERT_EQ(render("a.exr", {"--spp", "2", "--seed", "1", "--checkpoint", other, "-q"}).exit_code, 0);
+  for (const auto& inputs : {std::array{ckpt_, other}, std::array{other, ckpt_}}) {
+    write_checkpoint(ckpt_, checkpoint.identity, RenderState(16, 16, true));
+    const ProcessResult merged = run_vernier({"merge", inputs[0], inputs[1], "-o", folder_.file("c.exr")});
+    EXPECT_EQ(merged.exit_code, 3);
+    EXPECT_THAT(merged.err, HasSubstr("is damaged: its picture is not of the size that it says"));
+  }
+}
+
 TEST_F(ResumeCommand, OneCommandStartsAndGoesOn) {
   const std::vector<std::string> again{"--checkpoint", ckpt_, "--resume", ckpt_, "--progress", "none"};
   std::vector<std::string> more = again;
@@ -118,7 +153,7 @@ TEST_F(ResumeCommand, FilesThatCannotBeUsed) {
   EXPECT_EQ(render("a.exr", {"--resume", folder_.file("none.ckpt"), "-q"}).exit_code, 3);
   const ProcessResult nowhere = render("a.exr", {"--checkpoint", folder_.file("no/a.ckpt"), "-q"});
   EXPECT_EQ(nowhere.exit_code, 3);
-  EXPECT_THAT(nowhere.err, HasSubstr("no/a.ckpt: cannot be written"));
+  EXPECT_THAT(nowhere.err, HasSubstr("no/a.ckpt: cannot be written: folder"));
   EXPECT_EQ(render("a.exr", {"--checkpoint", ckpt_, "--checkpoint-every", "often"}).exit_code, 2);
   EXPECT_EQ(folder_.names(), (std::vector<std::string>{"b.ckpt"}));
 }

@@ -2,14 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <filesystem>
 #include <limits>
 
 #include "core/base/error.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/png_bytes.h"
 #include "tests/support/temporary_folder.h"
 
@@ -344,7 +343,7 @@ TEST(ImageIo, UnwritableOutputsAreFoundEarly) {
   EXPECT_THAT(check(folder.file("a")), HasSubstr(".exr"));
   EXPECT_THAT(check(folder.file("none/a.exr")), HasSubstr("does not exist"));
   folder.write("file", "");
-  EXPECT_THAT(check(folder.file("file/a.exr")), HasSubstr("is not a folder"));
+  EXPECT_THAT(check(folder.file("file/a.exr")), HasSubstr("Not a directory"));
   fs::create_directory(folder.path() / "d.png");
   EXPECT_THAT(check(folder.file("d.png")), HasSubstr("is a folder"));
   for (const char* good : {"a.exr", "a.png", "a.jpg", "a.JPEG", "a.b.EXR"})
@@ -352,24 +351,9 @@ TEST(ImageIo, UnwritableOutputsAreFoundEarly) {
   EXPECT_THAT(folder.names(), testing::ElementsAre("d.png", "file")) << "checking creates nothing";
   if (geteuid() == 0) return;  // whom permissions do not stop
   fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);
-  EXPECT_THAT(check(folder.file("a.exr")), HasSubstr("cannot write in folder"));
+  EXPECT_THAT(check(folder.file("a.exr")), HasSubstr("cannot be written: Permission denied"));
   fs::permissions(folder.path(), fs::perms::owner_all);
 }
-
-// Stands for a full disk: writes past the limit fail.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) {
-    std::signal(SIGXFSZ, SIG_IGN);
-    getrlimit(RLIMIT_FSIZE, &old_);
-    const rlimit low{bytes, old_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &low);
-  }
-  ~FileSizeLimit() { setrlimit(RLIMIT_FSIZE, &old_); }
-
- private:
-  rlimit old_{};
-};
 
 TEST(ImageIo, FailedWriteLeavesTheOldFileAndNothingElse) {
   const TemporaryFolder folder;
@@ -379,13 +363,14 @@ TEST(ImageIo, FailedWriteLeavesTheOldFileAndNothingElse) {
     SCOPED_TRACE(name);
     const std::string path = folder.write(name, "old");
     {
-      const FileSizeLimit limit(10000);
-      error_of(ErrorKind::output, [&] {
+      const test::FileSizeLimit limit(10000);
+      const std::string problem = error_of(ErrorKind::output, [&] {
         if (std::string(name) == "a.exr")
           write_exr(path, hdr_ramp(300, 300, 3), {"R", "G", "B"}, {});
         else
           write_image8(path, noise, {});
       });
+      EXPECT_EQ(problem, path + ": cannot be written: File too large");
     }
     EXPECT_TRUE(test::read_file(path) == "old");
   }
@@ -406,7 +391,7 @@ TEST(ImageIo, WritingIntoAMissingFolderIsAnOutputError) {
                        [] {
                          write_exr("/nonexistent/a.exr", hdr_ramp(2, 2, 3), {"R", "G", "B"}, {});
                        }),
-              HasSubstr("/nonexistent/a.exr: cannot write image: No such file"));
+              HasSubstr("/nonexistent/a.exr: cannot be written: folder '/nonexistent' does not exist"));
 }
 
 }  // namespace

@@ -210,6 +210,24 @@ TEST_F(CheckpointFile, HoldsAll) {
   EXPECT_EQ(folder_.names(), (std::vector<std::string>{"a.ckpt", "c.ckpt"}));
 }
 
+// A checkpoint holds all of a state, so its arrays are what a state takes.
+TEST_F(CheckpointFile, BytesPerPixelAreThoseOfTheState) {
+  const auto bytes_of = [&](bool adaptive) {
+    options_.adaptive = adaptive;
+    write_checkpoint(path_, {}, last_state());
+    const std::string file = read_file(path_);
+    return double(file.size()) / (options_.width * options_.height);
+  };
+  // Beside them there are header, parts and looks.
+  constexpr double rest = 2500.0 / (36 * 20);
+  for (const bool adaptive : {true, false}) {
+    const auto expected = double(RenderState::bytes_per_pixel(adaptive));
+    const double stored = bytes_of(adaptive);
+    EXPECT_GT(stored, expected);
+    EXPECT_LT(stored, expected + rest);
+  }
+}
+
 TEST_F(CheckpointFile, DamageIsFound) {
   const std::string bytes = read_file(path_);
   ASSERT_GT(bytes.size(), 36u * 20 * 100);

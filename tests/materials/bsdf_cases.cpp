@@ -196,6 +196,30 @@ void add_dispersion(CaseList& list) {
     }
 }
 
+/// One color's index is that of the other side, so it is not bent, and rough facets do not show, while the
+/// others are scattered: of each color in turn, since energy is measured of the first.
+void add_partly_matched_dispersion(CaseList& list) {
+  static const auto dispersion_of = [](const std::array<float, 3>& eta) {
+    Dispersion result{eta, {}};
+    for (size_t c = 0; c < 3; ++c) result.energy[c] = &GlassEnergy::of(eta[c]);
+    return result;
+  };
+  static const std::array<Dispersion, 2> sides{dispersion_of({1, 1.02f, 1.04f}),
+                                               dispersion_of({1.02f, 1, 1.04f})};
+  for (const float r : {0.f, 0.3f})
+    for (const Dispersion& side : sides) {
+      BsdfCase& added = list.add(
+          fmt::format("dispersing glass, indices {} {} {}, roughness {}", side.eta[0], side.eta[1],
+                      side.eta[2], r),
+          Dielectric{side.eta[1], ggx(r), white, fresnel(1.5f), false, side.energy[1], &side}, ggx(r));
+      added.eta = side.eta[0] == 1 ? 1.03 : side.eta[0];  // what is not bent is known to sample() alone
+      added.spread = 0.05;
+      added.transmits = added.lossless = true;
+      added.tolerance = 5e-3;
+      added.reciprocal = false;
+    }
+}
+
 void add_layers(CaseList& list) {
   const Rgb f0(0.04f, 0.04f, 0.04f);
   const auto base = [&](float r, const Rgb& color) { return Mixture{plastic(color, f0, 1, ggx(r)), {}, 0}; };
@@ -239,6 +263,7 @@ std::vector<BsdfCase> bsdf_cases() {
   add_bodies(list);
   add_films(list);
   add_dispersion(list);
+  add_partly_matched_dispersion(list);
   add_layers(list);
   return list.cases;
 }

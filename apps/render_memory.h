@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+namespace vernier::apps {
+
+/// What a render of one picture is made of, as far as memory goes.
+struct MemoryUse {
+  bool adaptive = true;
+  int layer_channels = 0;     ///< beside the color's three
+  bool error_layers = false;  ///< whether some layer needs error_layers()
+  bool denoise = false;
+  bool display = false;  ///< whether a .png or .jpg is written
+  bool report = false;
+};
+
+/// Bytes that a pixel takes at the peak: while rendering or while the outputs are made, whichever needs more.
+/// The scene comes on top.
+size_t peak_bytes_per_pixel(const MemoryUse& use);
+
+}  // namespace vernier::apps
