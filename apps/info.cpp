@@ -108,6 +108,7 @@ ExitCode run_info(const InfoFlags& flags) {
   const auto cameras = description.cameras;
   const auto notices = description.notices;
   Scene scene(std::move(description), {});
+  if (flags.import.strict) refuse_warnings(flags.scene, scene.notices());
   json["bounds"] = bounds_json(scene.bounds());
   json["render"] = default_render_json(scene, cameras);
   if (flags.json) {
@@ -117,6 +118,7 @@ ExitCode run_info(const InfoFlags& flags) {
   print_text(json, counts, scene.bounds());
   NoticeLog log(false);
   log.add(notices);
+  log.add(scene.notices());
   for (const CameraDescription& camera : cameras)
     if (!camera.defect.empty()) log.add({Notice::Severity::warning, {}, camera.defect});
   return ExitCode::done;

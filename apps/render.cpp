@@ -161,6 +161,7 @@ ExitCode run_render(const RenderFlags& flags, const std::string& command_line) {
   if (shows_light(flags))
     report.surroundings = surround(scene, request.surroundings, view, report.options, log);
   log.add(scene.notices());
+  if (flags.import.strict) refuse_warnings(flags.scene, scene.notices());
   const Camera camera(view, report.options.width, report.options.height);
   RenderHooks hooks = checkpointing.hooks(request, report, view);
   if (flags.verbose) fmt::print(stderr, "{}", scene_lines(report));

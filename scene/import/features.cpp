@@ -48,7 +48,9 @@ constexpr ExtensionEntry extensions[] = {
     {"KHR_materials_transmission", Status::exact, "thin walls let light pass straight through"},
     {"KHR_materials_unlit", Status::exact, ""},
     {"KHR_materials_volume", Status::exact,
-     "the mesh is the boundary, so thickness only tells volumes from thin walls; volumes do not nest"},
+     "the mesh is the boundary, so thickness only tells volumes from thin walls; the smaller of two volumes "
+     "that "
+     "overlap is there"},
     {"KHR_materials_variants", Status::exact, "one variant at a time, by name"},
     {"KHR_meshopt_compression", Status::exact, "as far as the library decodes it, else refused"},
     {"KHR_mesh_quantization", Status::exact, ""},
@@ -129,6 +131,19 @@ std::vector<FeatureUse> report_features(const tinygltf::Model& model) {
     if (entry.used(model))
       features.push_back({std::string(entry.name), entry.status, std::string(entry.note)});
   return features;
+}
+
+void note_bent_light(SceneDescription& scene) {
+  const auto bends = [&](const InstanceDescription& instance) {
+    const MaterialDescription& m = scene.materials[instance.material];
+    return m.transmission > 0 && m.bounds_volume() && m.ior != 1;
+  };
+  if (scene.lights.empty() || std::none_of(scene.instances.begin(), scene.instances.end(), bends)) return;
+  for (FeatureUse& feature : scene.features)
+    if (feature.name == "KHR_lights_punctual")
+      feature = {
+          feature.name, Status::approximated,
+          "light of a lamp that a volume bends on its way is not found; renders tell how much that is"};
 }
 
 std::string describe(const FeatureUse& feature) {

@@ -17,6 +17,9 @@ FeatureUse extension_use(const std::string& name);
 /// How each extension that the file uses, and each core feature worth a word, is honoured.
 std::vector<FeatureUse> report_features(const tinygltf::Model& model);
 
+/// Lamps are approximated beside volumes that bend light.
+void note_bent_light(SceneDescription& scene);
+
 /// "NAME is ignored: NOTE"
 std::string describe(const FeatureUse& feature);
 

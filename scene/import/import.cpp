@@ -86,8 +86,7 @@ void check_extents(const Document& document, const SceneDescription& scene) {
 void check_strictly(const Document& document, const SceneDescription& scene) {
   for (const auto& feature : scene.features)
     if (feature.status != FeatureUse::Status::exact) document.fail("", "strict: " + describe(feature));
-  for (const auto& notice : scene.notices)
-    if (notice.severity == Notice::Severity::warning) document.fail(notice.place, "strict: " + notice.text);
+  refuse_warnings(scene.source, scene.notices);
 }
 
 std::string combined_fingerprint(const std::vector<std::string>& parts) {
@@ -132,8 +131,15 @@ SceneDescription import_scene(const std::string& path, const ImportOptions& opti
   scene.environment = read_image_light(document, scene.notices, fingerprints);
   scene.hash = combined_fingerprint(fingerprints);
 
+  note_bent_light(scene);
   if (options.strict) check_strictly(document, scene);
   return scene;
+}
+
+void refuse_warnings(const std::string& path, std::span<const Notice> notices) {
+  for (const Notice& notice : notices)
+    if (notice.severity == Notice::Severity::warning)
+      throw Error(ErrorKind::input, path, notice.place, "strict: " + notice.text);
 }
 
 }  // namespace vernier

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "scene/description.h"
@@ -22,5 +23,9 @@ struct ImportOptions {
 /// Reads a .gltf or .glb file with all it refers to. Throws Error(input) with the file and JSON pointer, and
 /// Error(usage) on a variant or an animation that the file has not.
 SceneDescription import_scene(const std::string& path, const ImportOptions& options = {});
+
+/// Throws Error(input) for the first warning about the scene file: what `strict` means to notices that come up
+/// only when the scene is built.
+void refuse_warnings(const std::string& path, std::span<const Notice> notices);
 
 }  // namespace vernier
