@@ -197,7 +197,7 @@ void add_dispersion(CaseList& list) {
 }
 
 /// One color's index is that of the other side, so it is not bent, and rough facets do not show, while the
-/// others are scattered: of each color in turn, since energy is measured of the first.
+/// others are scattered. Energy is measured of the first color: once that one, once another.
 void add_partly_matched_dispersion(CaseList& list) {
   static const auto dispersion_of = [](const std::array<float, 3>& eta) {
     Dispersion result{eta, {}};
