@@ -33,9 +33,10 @@ struct RenderState {
   int tile_count() const { return tile_count(so_far.film.width(), so_far.film.height()); }
 
   static constexpr size_t bytes_per_pixel(bool adaptive) {
+    // Guides, the plan, and which samples come next.
     const size_t guiding =
-        Film::halves * (SampleGuide::bytes_per_pixel() + sizeof(uint16_t));  // and the plan
-    return Film::bytes_per_pixel() + Film::halves * sizeof(uint32_t) + (adaptive ? guiding : 0);
+        Film::halves * (SampleGuide::bytes_per_pixel() + sizeof(uint16_t) + sizeof(uint32_t));
+    return Film::bytes_per_pixel() + (adaptive ? guiding : 0);
   }
   /// Whether a render of a picture, or crop, of this size can go on from it.
   bool fits(int width, int height, bool adaptive) const {

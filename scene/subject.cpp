@@ -75,18 +75,21 @@ Subject::Subject(const SceneGeometry& geometry) : geometry_(geometry) {
     if (const Bounds bounds = bounds_of(geometry, i); !bounds.empty()) parts_.push_back({i, bounds});
   std::stable_sort(parts_.begin(), parts_.end(),
                    [](const Part& a, const Part& b) { return a.bounds.radius() < b.bounds.radius(); });
-  // The largest are taken off as long as they are setting to all that are smaller.
+  // The largest are taken off when all of them are setting to all that are smaller.
   std::vector<Bounds> up_to(parts_.size());
   for (size_t i = 0; i < parts_.size(); ++i) {
     if (i > 0) up_to[i] = up_to[i - 1];
     up_to[i].add(parts_[i].bounds);
   }
   size_t kept = parts_.size();
-  while (kept > 1) {
-    const Bounds& largest = parts_[kept - 1].bounds;
-    const float rest = up_to[kept - 2].radius();
-    if (!(rest > 0) || largest.radius() < (is_flat(largest) ? flat_setting : any_setting) * rest) break;
-    --kept;
+  float least = std::numeric_limits<float>::infinity();  // size to which all from `i` on are setting
+  for (size_t i = parts_.size(); i-- > 1;) {
+    const Bounds& part = parts_[i].bounds;
+    least = std::min(least, part.radius() / (is_flat(part) ? flat_setting : any_setting));
+    const float rest = up_to[i - 1].radius();
+    if (!(rest > 0) || least < rest) continue;
+    kept = i;
+    least = std::numeric_limits<float>::infinity();
   }
   left_out_ = parts_.size() - kept;
   parts_.resize(kept);

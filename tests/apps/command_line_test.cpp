@@ -64,7 +64,7 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{{"--view", "AECS SDR"}, 2, "did you mean 'ACES SDR'?"},
         Misuse{{"--progress", "pie"}, 2, "unknown --progress 'pie'"},
         Misuse{{"--camera", "back"}, 2, "unknown camera 'back'"}, Misuse{{"--camera", "1"}, 2, "0 (front)"},
-        Misuse{{"--env-scale", "2"}, 2, "need --env FILE"},
+        Misuse{{"--env-scale", "2"}, 2, "need --env studio, sky or FILE"},
         Misuse{{"--env", "/missing.hdr"}, 3, "missing.hdr"},
         Misuse{{"--ocio", "/missing.ocio"}, 3, "missing.ocio"},
         Misuse{{"-o", "/picture.gif"}, 3, "picture.gif"},

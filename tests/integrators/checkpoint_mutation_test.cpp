@@ -50,7 +50,7 @@ struct Parts {
     }
     if (text.empty()) text = header.dump();
     std::string file = "VERNCKPT";
-    for (const uint32_t number : {1u, uint32_t(text.size())})
+    for (const uint32_t number : {2u, uint32_t(text.size())})
       file.append(reinterpret_cast<const char*>(&number), sizeof(number));
     file += fingerprint(std::as_bytes(std::span(text))) + text;
     for (const std::string& array : arrays) file += array;
@@ -160,7 +160,7 @@ TEST_F(CheckpointMutation, AnyByteChangedOrAnyLength) {
 TEST_F(CheckpointMutation, HostileHeaders) {
   const std::vector<std::string> places{
       "/width",         "/height",         "/adaptive",       "/done",           "/looked_at",
-      "/pass",          "/pass/size",      "/pass/odd_half",  "/pass/fewest",    "/seconds",
+      "/pass",          "/pass/size",      "/pass/odd_half",  "/pass/guiding",    "/seconds",
       "/samples",       "/rays",           "/rays/0",         "/rays/2",         "/bad_samples",
       "/arrays",        "/arrays/0",       "/arrays/0/bytes", "/arrays/3/bytes", "/arrays/4/bytes",
       "/arrays/5/name", "/arrays/5/bytes", "/arrays/6/bytes", "/arrays/7/bytes", "/render",
@@ -206,7 +206,7 @@ TEST_F(CheckpointMutation, HostileArrays) {
 
 TEST_F(CheckpointMutation, PartsBeyondThePassNeverComeToAnEnd) {
   Parts parts(bytes_);
-  std::memset(parts.arrays[5].data(), 0x7f, 4);
+  std::memset(parts.arrays[6].data(), 0x7f, 4);
   EXPECT_THAT(outcome(parts.join(), true), HasSubstr("'parts' holds values that no render has"));
 }
 
@@ -218,8 +218,8 @@ TEST_F(CheckpointMutation, AHugePassIsRefused) {
 
 TEST_F(CheckpointMutation, SizesThatWrapAreRefused) {
   Parts parts(bytes_);
-  parts.header["arrays"][6]["bytes"] = std::numeric_limits<uint64_t>::max() - 95;
-  parts.header["arrays"][0]["bytes"] = parts.arrays[0].size() + parts.arrays[6].size() + 96;
+  parts.header["arrays"][7]["bytes"] = std::numeric_limits<uint64_t>::max() - 95;
+  parts.header["arrays"][0]["bytes"] = parts.arrays[0].size() + parts.arrays[7].size() + 96;
   EXPECT_THAT(outcome(parts.join(), false), HasSubstr("is damaged"));
 }
 
@@ -244,8 +244,9 @@ TEST_F(CheckpointMutation, NothingIsAllocatedForWhatIsNotThere) {
   set(1, pixels * 28);
   set(2, pixels * 28);
   set(3, pixels * 8);
-  set(4, pixels * 4);
-  set(5, uint64_t{3750} * 3750 * 4);
+  set(4, uint64_t{3750} * 3750 * 40);
+  set(5, pixels * 4);
+  set(6, uint64_t{3750} * 3750 * 4);
   for (std::string& array : parts.arrays) array.clear();
   const std::string file = parts.join();
   rlimit before{};

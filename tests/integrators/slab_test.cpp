@@ -55,6 +55,7 @@ TEST(Slab, TransmitsAndReflectsInClosedForm) {
       const Ray ray = sight(cosine);
       EXPECT_TRUE(sees(through, *path(options), ray, closed.transmitted, 2e-3));
       EXPECT_TRUE(sees(off, *path(options), ray, closed.reflected, 1e-2));
+      options.max_depth = 20;
       const auto whitted = make_integrator("whitted", options);
       EXPECT_NEAR(measure(through, *whitted, ray, 1, 1).mean(), closed.transmitted, 2e-5);
       EXPECT_NEAR(measure(off, *whitted, ray, 1, 1).mean(), closed.reflected, 2e-5);

@@ -26,8 +26,17 @@ struct View {
   Camera camera;
 
   View(const std::string& name, const std::string& accelerator, SceneDescription description)
-      : scene(std::move(description), {accelerator}), camera(view_of(name, scene), width, height) {}
+      : scene(lit(std::move(description)), {accelerator}), camera(view_of(name, scene), width, height) {}
 
+  /// Under a white sky.
+  static SceneDescription lit(SceneDescription description) {
+    auto picture = std::make_shared<Image>(2, 1, 3);
+    std::fill(picture->values.begin(), picture->values.end(), 1.f);
+    auto sky = std::make_shared<EnvironmentDescription>();
+    sky->picture = std::move(picture);
+    description.environment = std::move(sky);
+    return description;
+  }
   static CameraDescription view_of(const std::string& name, const Scene& scene) {
     const auto cameras = import_scene(file_of(name)).cameras;
     if (!cameras.empty()) return cameras.front();
