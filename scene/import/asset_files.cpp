@@ -105,7 +105,7 @@ AssetContent AssetFiles::read_reference(const std::string& uri, const std::strin
   if (name.empty() || name.find('\0') != std::string::npos) refuse("is not a file name");
   const auto checked = [&](const std::string& file) {
     // Dots go by the rules of URIs (RFC 3986, 5.2.4): "sub/../file" needs no folder "sub".
-    const fs::path reference = fs::path(file).lexically_normal();
+    fs::path reference = fs::path(file).lexically_normal();
     if (leaves_folder(reference) && !allow_outside_)
       refuse(fmt::format("leaves the scene file's folder; {}", how_to_allow));
     return reference;
