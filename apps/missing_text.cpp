@@ -11,14 +11,18 @@ nlohmann::ordered_json figure_json(const MissingFigure& figure) {
   return {{"share", figure.share}, {"rel_rmse", figure.rel_rmse}};
 }
 
+std::string percent(double share) {
+  return fmt::format(fmt::runtime(share < 0.1 ? "{:.2g} %" : "{:.0f} %"), 100 * share);
+}
+
 }  // namespace
 
 std::string missing_text(const MissingEstimate& missing) {
   std::string text;
   if (missing.bent.share >= least_missing_share)
-    text += fmt::format(" + up to {:.2g} % of all light missing behind glass", 100 * missing.bent.share);
+    text += fmt::format(" + up to {} of all light missing behind glass", percent(missing.bent.share));
   if (missing.depth.share >= least_missing_share)
-    text += fmt::format(" + {:.2g} % of all light missing beyond the depth limit", 100 * missing.depth.share);
+    text += fmt::format(" + {} of all light missing beyond the depth limit", percent(missing.depth.share));
   return text;
 }
 
@@ -27,18 +31,17 @@ void warn_of_missing_light(const RenderResult& result, int max_depth, NoticeLog&
   if (missing.bent.share >= least_missing_share)
     log.add({Notice::Severity::warning,
              {},
-             fmt::format(
-                 "lamps shine through glass that bends their light: up to {:.2g} % of all light is not in "
-                 "this picture and not in its error; an emissive mesh in place of the lamp, or glass "
-                 "without thickness, is rendered in full",
-                 100 * missing.bent.share)});
+             fmt::format("lamps shine through glass that bends their light: up to {} of all light is not in "
+                         "this picture and not in its error; an emissive mesh in place of the lamp, or glass "
+                         "without thickness, is rendered in full",
+                         percent(missing.bent.share))});
   if (missing.depth.share >= least_missing_share)
-    log.add({Notice::Severity::warning,
-             {},
-             fmt::format(
-                 "the depth limit cuts off {:.2g} % of all light, which is not in the error: --max-depth {} "
-                 "finds more",
-                 100 * missing.depth.share, 4 * max_depth)});
+    log.add(
+        {Notice::Severity::warning,
+         {},
+         fmt::format("the depth limit cuts off {} of all light, which is not in the error: --max-depth {} "
+                     "finds more",
+                     percent(missing.depth.share), 4 * max_depth)});
 }
 
 nlohmann::ordered_json missing_json(const MissingEstimate& missing) {

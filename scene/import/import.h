@@ -24,8 +24,8 @@ struct ImportOptions {
 /// Error(usage) on a variant or an animation that the file has not.
 SceneDescription import_scene(const std::string& path, const ImportOptions& options = {});
 
-/// Throws Error(input) for the first warning about the scene file: what `strict` means to notices that come up
-/// only when the scene is built.
+/// Throws Error(input) for the first warning about the scene file: what `strict` means to notices that come
+/// up only when the scene is built.
 void refuse_warnings(const std::string& path, std::span<const Notice> notices);
 
 }  // namespace vernier

@@ -160,7 +160,7 @@ TEST_F(CheckpointMutation, AnyByteChangedOrAnyLength) {
 TEST_F(CheckpointMutation, HostileHeaders) {
   const std::vector<std::string> places{
       "/width",         "/height",         "/adaptive",       "/done",           "/looked_at",
-      "/pass",          "/pass/size",      "/pass/odd_half",  "/pass/guiding",    "/seconds",
+      "/pass",          "/pass/size",      "/pass/odd_half",  "/pass/guiding",   "/seconds",
       "/samples",       "/rays",           "/rays/0",         "/rays/2",         "/bad_samples",
       "/arrays",        "/arrays/0",       "/arrays/0/bytes", "/arrays/3/bytes", "/arrays/4/bytes",
       "/arrays/5/name", "/arrays/5/bytes", "/arrays/6/bytes", "/arrays/7/bytes", "/render",
