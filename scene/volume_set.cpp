@@ -110,6 +110,8 @@ VolumeSet::VolumeSet(const VolumeBoundaries& boundaries, const SceneGeometry& ge
   std::stable_sort(order.begin(), order.end(),
                    [&](size_t a, size_t b) { return boxes[a].half_area() > boxes[b].half_area(); });
   of_instance_.resize(geometry.instance_count());
+  media_.reserve(order.size());
+  bounds_.reserve(order.size());
   for (const size_t i : order) {
     const Material& material = materials[material_of_instance[closed[i].instances[0]]];
     for (const uint32_t instance : closed[i].instances)
