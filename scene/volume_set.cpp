@@ -92,6 +92,7 @@ VolumeBoundaries::VolumeBoundaries(const SceneGeometry& geometry,
     of_object.insert(of_object.end(), group.begin(), group.end());
   }
   std::vector<Group> objects;
+  objects.reserve(open_parts.size());
   for (auto& [object, group] : open_parts) objects.push_back(std::move(group));
   for (const Group& group : take_closed(geometry, std::move(objects), closed))
     open.insert(open.end(), group.begin(), group.end());
