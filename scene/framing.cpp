@@ -62,11 +62,11 @@ CameraDescription fit_camera(CameraDescription camera, const FarthestPoint& fart
   const Vec3d back = normalize(Vec3d(camera.to_world.z));
   const Vec3d right = normalize(cross(Vec3d(camera.to_world.y), back)), up = cross(back, right);
   const Extent depth = extent(farthest, back), width = extent(farthest, right), height = extent(farthest, up);
-  // A body that is a point, or is seen end on, still has the camera in front of it, by more than floats
-  // round.
-  const double size =
-      std::max({depth.size(), width.size(), height.size(), 1e-2 * std::abs(depth.upper), 1e-6});
-  const double nearest = depth.upper + 0.01 * size;
+  // A body that is a point, or is seen end on, still has the camera in front of it.
+  const double size = std::max({depth.size(), width.size(), height.size(), 1e-6});
+  const double far_off =
+      std::max({std::abs(depth.upper), std::abs(width.middle()), std::abs(height.middle())});
+  const double nearest = depth.upper + std::max(0.01 * size, 1e-5 * far_off);
   const double filled = 1 - 2.0 * margin;
   double x = width.middle(), y = height.middle(), z = nearest + size;
   if (camera.kind == CameraDescription::Kind::orthographic) {

@@ -9,10 +9,11 @@
 namespace vernier {
 namespace {
 
-/// An instance so many times as large as all smaller ones together is setting.
-constexpr float flat_setting = 10, any_setting = 100;
-/// Least over middle extent of what counts as flat.
-constexpr float flat_enough = 0.02f;
+/// An instance so many times as large as the subject may be its setting.
+constexpr float setting_ratio = 10;
+/// Least over middle extent of what counts as flat. A board that stands upright may be thicker: its face is
+/// what it is for, while a thing that lies is seen well from above the ground, but for a sheet.
+constexpr float flat_enough = 0.02f, flat_enough_upright = 0.15f;
 
 bool is_flat(const Bounds& bounds) {
   Vec3f size = bounds.upper - bounds.lower;
@@ -68,6 +69,23 @@ Bounds bounds_of(const SceneGeometry& geometry, uint32_t instance) {
       Bounds{});
 }
 
+/// Whether most of a surface faces a point that it lies around.
+bool is_inside_out(const SceneGeometry& geometry, uint32_t instance, const Vec3f& center) {
+  struct Volume {
+    double six_times = 0;
+    void add(const Volume& other) { six_times += other.six_times; }
+  };
+  const Volume volume = over_blocks(
+      geometry.triangle_count(instance),
+      [&](Volume& sum, uint32_t i) {
+        const auto [a, b, c] = geometry.triangle(instance, i);
+        const Vec3d to_a(a - center), to_b(b - center), to_c(c - center);
+        if (is_finite(a) && is_finite(b) && is_finite(c)) sum.six_times += dot(to_a, cross(to_b, to_c));
+      },
+      Volume{});
+  return volume.six_times < 0;
+}
+
 }  // namespace
 
 Subject::Subject(const SceneGeometry& geometry) : geometry_(geometry) {
@@ -75,21 +93,19 @@ Subject::Subject(const SceneGeometry& geometry) : geometry_(geometry) {
     if (const Bounds bounds = bounds_of(geometry, i); !bounds.empty()) parts_.push_back({i, bounds});
   std::stable_sort(parts_.begin(), parts_.end(),
                    [](const Part& a, const Part& b) { return a.bounds.radius() < b.bounds.radius(); });
-  // The largest are taken off when all of them are setting to all that are smaller.
   std::vector<Bounds> up_to(parts_.size());
   for (size_t i = 0; i < parts_.size(); ++i) {
     if (i > 0) up_to[i] = up_to[i - 1];
     up_to[i].add(parts_[i].bounds);
   }
+  // The subject ends where all that is larger is setting to it. What is not ten times as large as the
+  // smallest is none to anything.
   size_t kept = parts_.size();
-  float least = std::numeric_limits<float>::infinity();  // size to which all from `i` on are setting
   for (size_t i = parts_.size(); i-- > 1;) {
-    const Bounds& part = parts_[i].bounds;
-    least = std::min(least, part.radius() / (is_flat(part) ? flat_setting : any_setting));
-    const float rest = up_to[i - 1].radius();
-    if (!(rest > 0) || least < rest) continue;
-    kept = i;
-    least = std::numeric_limits<float>::infinity();
+    const Bounds &part = parts_[i].bounds, &rest = up_to[i - 1];
+    if (part.radius() < setting_ratio * parts_[0].bounds.radius()) break;
+    if (!is_flat(part) && !is_inside_out(geometry, parts_[i].instance, rest.center())) break;
+    if (rest.radius() > 0 && part.radius() >= setting_ratio * rest.radius()) kept = i;
   }
   left_out_ = parts_.size() - kept;
   parts_.resize(kept);
@@ -140,8 +156,9 @@ std::optional<Vec3f> Subject::flat_normal(const Vec3f& viewer) const {
   }
   const size_t facing = size_t(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
   const double others = std::min(sizes[(facing + 1) % 3].second, sizes[(facing + 2) % 3].second);
-  if (!(sizes[facing].second <= flat_enough * others)) return std::nullopt;
   const Vec3d normal(axes[0][int(facing)], axes[1][int(facing)], axes[2][int(facing)]);
+  const bool upright = std::abs(normal.y) < 0.5;
+  if (!(sizes[facing].second <= (upright ? flat_enough_upright : flat_enough) * others)) return std::nullopt;
   const double front = dot(sums.normal, normal);
   const bool one_sided = std::abs(front) > 0.01 * areas[int(facing)];
   const bool turn = one_sided ? front < 0 : dot(Vec3d(viewer), normal) < 0;

@@ -7,9 +7,9 @@
 
 namespace vernier {
 
-/// What a picture of a scene is of: its instances but for their setting. An instance is setting when it is
-/// so much larger than all smaller ones together that these would be lost in a view of it: ten times for
-/// something flat (the ground, a backdrop), a hundred times for anything else (the dome of a sky).
+/// What a picture of a scene is of: its instances but for their setting, in a view of which they would be
+/// lost. Setting is what is flat (the ground, a backdrop) or seen from inside (the dome of a sky), and ten
+/// times as large as the subject.
 class Subject {
  public:
   /// The geometry must live as long.

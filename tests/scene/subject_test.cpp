@@ -27,7 +27,9 @@ TEST(Subject, AGroundThatDwarfsTheSubjectIsSetting) {
 
 TEST(Subject, SkyDomeAndGroundAreBothSetting) {
   SceneBuilder builder;
-  builder.add(sphere({0, 0, 0}, 1000, 8, 8), emitter(1)).add(ground(300), diffuse(0.5f));
+  MeshDescription dome = sphere({0, 0, 0}, 1000, 8, 8);
+  for (Triangle& t : dome.triangles) std::swap(t[1], t[2]);
+  builder.add(std::move(dome), emitter(1)).add(ground(300), diffuse(0.5f));
   builder.add(cube({0, 0.5f, 0}, 1), diffuse(0.5f)).add(cube({2, 0.5f, 0}, 1), diffuse(0.5f));
   const Scene scene = builder.build();
   EXPECT_EQ(Subject(scene.geometry()).left_out(), 2u);
@@ -41,6 +43,13 @@ TEST(Subject, ABodyWithSmallPartsAndAFloorOfItsSizeAreSeenWhole) {
   const Subject subject(scene.geometry());
   EXPECT_EQ(subject.left_out(), 0u);
   EXPECT_NEAR(subject.bounds().upper.x, 3, 1e-6);
+}
+
+TEST(Subject, ABodyIsNoSettingToItsSmallestPart) {
+  SceneBuilder builder;
+  builder.add(sphere({0, 0, 0}, 2, 8, 8), diffuse(0.5f)).add(cube({0, 0, 2}, 0.01f), emitter(1));
+  const Scene scene = builder.build();
+  EXPECT_EQ(Subject(scene.geometry()).left_out(), 0u);
 }
 
 TEST(Subject, AGroundAloneIsTheSubject) {
@@ -79,6 +88,13 @@ TEST(Subject, ACardWithTwoFrontsFacesTheViewer) {
   const Subject subject(scene.geometry());
   EXPECT_NEAR(subject.flat_normal({0.5f, 0.3f, 1}).value_or(Vec3f(0)).z, 1, 1e-5);
   EXPECT_NEAR(subject.flat_normal({0.5f, 0.3f, -1}).value_or(Vec3f(0)).z, -1, 1e-5);
+}
+
+TEST(Subject, AnUprightBoardIsSeenFaceOnAndAThingThatLiesIsNot) {
+  const Scene upright = SceneBuilder().add(box({0, 0, 0}, {2, 1, 0.1f}), diffuse(0.5f)).build();
+  EXPECT_NEAR(Subject(upright.geometry()).flat_normal({0, 0, 1}).value_or(Vec3f(0)).z, 1, 1e-5);
+  const Scene lying = SceneBuilder().add(box({0, 0, 0}, {2, 0.1f, 1}), diffuse(0.5f)).build();
+  EXPECT_FALSE(Subject(lying.geometry()).flat_normal({0, 0, 1}));
 }
 
 TEST(Subject, BodiesAreNotFlat) {
