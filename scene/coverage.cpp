@@ -1,6 +1,8 @@
 #include "scene/coverage.h"
 
+#include <algorithm>
 #include <bit>
+#include <map>
 
 #include "core/sampling/sampler.h"
 #include "scene/emission.h"
@@ -19,7 +21,40 @@ float hash_to_unit(const Ray& ray, const RawHit& hit) {
   return float(mix_bits(h) >> 8) * 0x1p-24f;
 }
 
+/// Of all texels; filtering gives no less.
+float least_alpha(const Image8& image) {
+  if (image.channels % 2 != 0) return 1;
+  const auto channels = size_t(image.channels);
+  uint8_t least = 255;
+  for (size_t i = channels - 1; i < image.values.size() && least > 0; i += channels)
+    least = std::min(least, image.values[i]);
+  return float(least) / 255;
+}
+
 }  // namespace
+
+std::vector<bool> cut_instances(const SceneGeometry& geometry, std::span<const MaterialDescription> materials,
+                                std::span<const Texture> textures) {
+  std::map<int, float> of_textures;
+  std::vector<float> of_materials(materials.size());
+  for (size_t i = 0; i < materials.size(); ++i) {
+    of_materials[i] = materials[i].base_color.w;
+    if (const TextureUse& use = materials[i].base_color_texture;
+        use && materials[i].alpha_mode != AlphaMode::opaque) {
+      const auto [entry, is_new] = of_textures.try_emplace(use.texture);
+      if (is_new) entry->second = least_alpha(textures[size_t(use.texture)].image());
+      of_materials[i] *= entry->second;
+    }
+  }
+  std::vector<bool> cut(geometry.instance_count());
+  for (uint32_t i = 0; i < cut.size(); ++i) {
+    const MaterialDescription& material = materials[geometry.material_of(i)];
+    if (material.alpha_mode == AlphaMode::opaque) continue;
+    const float needed = material.alpha_mode == AlphaMode::mask ? material.alpha_cutoff : 1;
+    cut[i] = of_materials[geometry.material_of(i)] * geometry.least_alpha(i) < needed;
+  }
+  return cut;
+}
 
 bool CoverageFilter::accept(const Ray& ray, const RawHit& hit) const {
   const Material& material = materials_[material_of_instance_[hit.instance]];

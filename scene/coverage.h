@@ -1,11 +1,18 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "scene/accel/accelerator.h"
 #include "scene/geometry.h"
 
 namespace vernier {
+
+/// By instance: whether alpha takes anything from its surface. Programs write BLEND and MASK where nothing is
+/// to be cut out; such a material is as good as OPAQUE. `materials` are those of the description that
+/// `geometry` was made from.
+std::vector<bool> cut_instances(const SceneGeometry& geometry, std::span<const MaterialDescription> materials,
+                                std::span<const Texture> textures);
 
 /// Alpha as coverage: lets a hit count with the probability that the material covers the point (glTF
 /// alphaMode MASK and BLEND). The choice is a hash of ray and hit, so the same ray meets the same surfaces in

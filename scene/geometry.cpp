@@ -137,6 +137,12 @@ SurfacePoint SceneGeometry::surface_point(const Ray& ray, const RawHit& hit) con
   return point;
 }
 
+float SceneGeometry::least_alpha(uint32_t instance) const {
+  float least = 1;
+  for (const Vec4f& color : mesh_of(instance).colors) least = std::min(least, color.w);
+  return least;
+}
+
 SurfaceAttributes SceneGeometry::attributes(const SurfacePoint& point) const {
   const MeshDescription& mesh = mesh_of(point.instance);
   const Triangle& triangle = mesh.triangles[point.primitive];

@@ -24,6 +24,8 @@ class SceneGeometry {
   size_t triangle_count(uint32_t instance) const { return mesh_of(instance).triangles.size(); }
   uint32_t material_of(uint32_t instance) const { return instances_[instance].material; }
   bool has_colors(uint32_t instance) const { return !mesh_of(instance).colors.empty(); }
+  /// Of the vertex colors; 1 without any.
+  float least_alpha(uint32_t instance) const;
   size_t stored_triangles() const;
   size_t instanced_triangles() const;
 

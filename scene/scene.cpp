@@ -12,13 +12,15 @@
 namespace vernier {
 namespace {
 
-/// Names what cannot hold the volume that its material asks for.
-Notice open_volumes(std::span<const InstanceDescription> instances, const std::vector<uint32_t>& open) {
-  const std::string& name = instances[open[0]].name;
-  std::string text = name.empty() ? "instance " + std::to_string(open[0]) : "the mesh of '" + name + "'";
-  if (open.size() > 1) text += " (and " + std::to_string(open.size() - 1) + " more)";
-  return {Notice::Severity::warning, "KHR_materials_volume",
-          text + " is not closed, so it has no inside: its surface is taken for thin-walled"};
+/// Names what cannot hold the volume that its material asks for, and why.
+void note_without_volume(std::span<const InstanceDescription> instances, const std::vector<uint32_t>& without,
+                         const char* reason, std::vector<Notice>& notices) {
+  if (without.empty()) return;
+  const std::string& name = instances[without[0]].name;
+  std::string text = name.empty() ? "instance " + std::to_string(without[0]) : "the mesh of '" + name + "'";
+  if (without.size() > 1) text += " (and " + std::to_string(without.size() - 1) + " more)";
+  notices.push_back({Notice::Severity::warning, "KHR_materials_volume",
+                     text + reason + ", so it has no inside: its surface is taken for thin-walled"});
 }
 
 }  // namespace
@@ -37,21 +39,24 @@ Scene::Scene(SceneDescription description, const Options& options)
 }
 
 void Scene::compile_materials(const SceneDescription& description) {
-  const VolumeBoundaries boundaries(geometry_, description.instances, description.materials);
-  // A material may be used with and without vertex colours, on closed and on open surfaces: each time
-  // compiled anew.
-  std::map<std::tuple<uint32_t, bool, bool>, uint32_t> compiled;
+  const std::vector<bool> is_cut = cut_instances(geometry_, description.materials, textures_);
+  const VolumeBoundaries boundaries(geometry_, description.instances, description.materials, is_cut);
+  // A material may be used with and without vertex colors, on closed and on open surfaces, and cut out or
+  // not: each time compiled anew.
+  std::map<std::tuple<uint32_t, bool, bool, bool>, uint32_t> compiled;
   for (uint32_t i = 0; i < geometry_.instance_count(); ++i) {
     MaterialDescription material = description.materials[geometry_.material_of(i)];
-    const bool is_open = std::binary_search(boundaries.open.begin(), boundaries.open.end(), i);
-    if (is_open) material.thickness = 0;
-    const std::tuple key(geometry_.material_of(i), geometry_.has_colors(i), is_open);
+    if (!is_cut[i]) material.alpha_mode = AlphaMode::opaque;
+    if (boundaries.is_thin(i)) material.thickness = 0;
+    const std::tuple key(geometry_.material_of(i), geometry_.has_colors(i), bool(is_cut[i]),
+                         boundaries.is_thin(i));
     const auto [entry, is_new] = compiled.try_emplace(key, uint32_t(materials_.size()));
     if (is_new) materials_.emplace_back(material, textures_, geometry_.has_colors(i));
     material_of_instance_.push_back(entry->second);
   }
   volumes_ = VolumeSet(boundaries, geometry_, materials_, material_of_instance_);
-  if (!boundaries.open.empty()) notices_.push_back(open_volumes(description.instances, boundaries.open));
+  note_without_volume(description.instances, boundaries.open, " is not closed", notices_);
+  note_without_volume(description.instances, boundaries.cut, " has holes by its alpha", notices_);
   // Boundaries that bend light stop what goes straight: of interest only to lamps, whose light is then known
   // to be missing, and where one volume may hide the boundary of another.
   const bool crosses_volumes = volumes_.are_nested() || !description.lights.empty();

@@ -77,11 +77,19 @@ bool any_touch(std::vector<Bounds> boxes) {
 
 VolumeBoundaries::VolumeBoundaries(const SceneGeometry& geometry,
                                    std::span<const InstanceDescription> instances,
-                                   std::span<const MaterialDescription> materials) {
+                                   std::span<const MaterialDescription> materials,
+                                   const std::vector<bool>& is_cut) {
   // What one material covers of an object is closed, or all such parts of the object are together.
   std::map<uint64_t, Group> open_parts;
   std::vector<Group> groups;
-  for (auto& [key, group] : parts_of_objects(instances, materials)) groups.push_back(std::move(group));
+  for (auto& [key, group] : parts_of_objects(instances, materials)) {
+    const auto whole =
+        std::stable_partition(group.begin(), group.end(), [&](uint32_t i) { return is_cut[i]; });
+    cut.insert(cut.end(), group.begin(), whole);
+    group.erase(group.begin(), whole);
+    if (!group.empty()) groups.push_back(std::move(group));
+  }
+  std::sort(cut.begin(), cut.end());
   for (const Group& group : take_closed(geometry, std::move(groups), closed)) {
     const auto& first = instances[group[0]];
     if (!first.object) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -12,16 +13,24 @@ namespace vernier {
 /// Which instances enclose a volume, alone or together. Found before materials are compiled, since a surface
 /// that should enclose one and is open has no inside: it is taken for thin-walled.
 struct VolumeBoundaries {
-  /// `instances` and `materials` of the description that `geometry` was made from.
+  /// `instances` and `materials` of the description that `geometry` was made from; `is_cut` by instance:
+  /// alpha makes holes in its surface.
   VolumeBoundaries(const SceneGeometry& geometry, std::span<const InstanceDescription> instances,
-                   std::span<const MaterialDescription> materials);
+                   std::span<const MaterialDescription> materials, const std::vector<bool>& is_cut);
 
   struct Boundary {
     std::vector<uint32_t> instances;
     bool is_inward = false;  ///< fronts look to the inside
   };
   std::vector<Boundary> closed;
-  std::vector<uint32_t> open;  ///< instances whose material asks for a volume that they do not enclose
+  // Instances whose material asks for a volume that they do not enclose, in order:
+  std::vector<uint32_t> open;  ///< the mesh has holes
+  std::vector<uint32_t> cut;   ///< alpha makes holes in it
+
+  bool is_thin(uint32_t instance) const {
+    return std::binary_search(open.begin(), open.end(), instance) ||
+           std::binary_search(cut.begin(), cut.end(), instance);
+  }
 };
 
 /// The regions of a scene that a medium other than air fills (KHR_materials_volume). Numbered by increasing

@@ -25,6 +25,12 @@ constexpr Technique others[] = {{"light", LightSampling::light, true, "bvh"},
                                 {"mis without roulette", LightSampling::mis, false, "bvh"},
                                 {"mis with embree", LightSampling::mis, true, "embree"}};
 
+/// Which surfaces with an alpha a ray meets is a matter of its bits: one ray many times is no mean.
+Ray shaken(Ray ray, const Vec2f& u) {
+  ray.direction = normalize(ray.direction + (Vec3f(u.x, u.y, u.x * u.y) - Vec3f(0.5f)) * 1e-3f);
+  return ray;
+}
+
 /// By channel.
 std::array<Samples, 3> radiance(const Scene& scene, const Technique& technique, const RandomScene& random,
                                 const Ray& ray, uint64_t seed, uint64_t factor) {
@@ -40,7 +46,7 @@ std::array<Samples, 3> radiance(const Scene& scene, const Technique& technique, 
     const auto count = uint32_t(samples * factor);
     for (uint32_t i = 0; i < count; ++i) {
       Sampler sampler(set, i, seed);
-      mean += Vec3d(integrator->estimate(scene, ray, sampler).radiance);
+      mean += Vec3d(integrator->estimate(scene, shaken(ray, sampler.next2()), sampler).radiance);
     }
     for (int c = 0; c < 3; ++c) result[size_t(c)].add(mean[c] / count);
   }

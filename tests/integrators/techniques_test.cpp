@@ -229,7 +229,7 @@ View sun_and_lamps() {
   SceneBuilder builder;
   builder.add(parallelogram({-200, 0, -200}, {0, 0, 400}, {400, 0, 0}), grey(diffuse(1), 0.5f))
       .add(parallelogram({-3, 2.5f, -3}, {6, 0, 0}, {0, 0, 6}), grey(diffuse(1), 0.1f))
-      .add(lamp(Kind::directional, {}, {0.01f, -1, 0}, 1e5f));
+      .add(lamp(Kind::directional, {0, 0, 0}, {0.01f, -1, 0}, 1e5f));
   for (int i = 0; i < 6; ++i) builder.add(lamp(Kind::point, {float(i) - 2.5f, 2, 0.3f}, {0, -1, 0}, 10));
   return {"sun_and_lamps", builder.build(), ray_through({0.5f, 1, 2}, {0.2f, 0, 0.1f}), 2, 1e-2, true};
 }
@@ -247,7 +247,7 @@ View window_sun() {
               .add(parallelogram({-4, 1, -4}, {8, 0, 0}, {0, 0.1f, 8}), pane)
               .add(parallelogram({-4, 1.3f, -4}, {8, 0.3f, 0}, {0, 0, 8}), tinted)
               .add(parallelogram({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}), emitter(3))
-              .add(lamp(Kind::directional, {}, {0.5f, -1, 0.2f}, 2))
+              .add(lamp(Kind::directional, {0, 0, 0}, {0.5f, -1, 0.2f}, 2))
               .environment([](const Vec3f& w) { return 0.3f + std::max(0.f, w.y); })
               .build(),
           ray_through({0.3f, 0.8f, 2}, {0.2f, 0, 0}),

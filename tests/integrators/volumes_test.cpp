@@ -196,6 +196,25 @@ TEST(Volumes, OpenOnesAreThinAndSaidToBe) {
     }
 }
 
+TEST(Volumes, CutOnesAreThinAndSaidToBe) {
+  const auto glass = [](AlphaMode mode, float alpha) {
+    MaterialDescription m = body(1, 0.2f);
+    m.alpha_mode = mode;
+    m.base_color.w = alpha;
+    return m;
+  };
+  for (const auto mode : {AlphaMode::blend, AlphaMode::mask}) {
+    const Scene cut = white_sky().add(slab(0, 1), glass(mode, 0.4f)).build();
+    ASSERT_EQ(cut.notices().size(), 1u);
+    EXPECT_NE(cut.notices()[0].text.find("holes by its alpha"), std::string::npos);
+    expect_everywhere(white_sky().add(slab(0, 1), glass(mode, 0.4f)), down, 1);
+    // An alpha that takes nothing leaves the volume whole.
+    const float enough = mode == AlphaMode::mask ? 0.5f : 1;
+    EXPECT_TRUE(white_sky().add(slab(0, 1), glass(mode, enough)).build().notices().empty());
+    expect_everywhere(white_sky().add(slab(0, 1), glass(mode, enough)), down, 0.2);
+  }
+}
+
 TEST(Volumes, ManyOfOneKind) {
   // Nine marbles in a row, instances of one mesh.
   SceneDescription d;
