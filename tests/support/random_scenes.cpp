@@ -54,10 +54,16 @@ class Maker {
   /// Beside, in, overlapping or touching the one before.
   void bodies() {
     Vec3f lower(-1.5f, 0.05f, -0.8f), upper = lower + size();
+    bool is_against = false, may_touch = false;
     for (int count = 1 + int(between(0, 4)); count > 0; --count) {
       const bool round = chance(0.25f);
-      add(round ? sphere((lower + upper) * 0.5f, min_half(upper - lower), 8, 16) : box(lower, upper),
-          material(true));
+      const MaterialDescription m = material(true);
+      // Which of two surfaces at one place is met is nobody's to say, but for boundaries of volumes.
+      const bool is_filled = m.bounds_volume() && m.alpha_mode == AlphaMode::opaque && is_black(m.emissive);
+      if (is_against && !(may_touch && is_filled)) lower.x += 0.01f, upper.x += 0.01f;
+      is_against = false;
+      may_touch = is_filled;
+      add(round ? sphere((lower + upper) * 0.5f, min_half(upper - lower), 8, 16) : box(lower, upper), m);
       const Vec3f extent = upper - lower;
       if (const float how = random_.next1(); how < 0.25f) {  // within
         lower += extent * 0.2f;
@@ -66,6 +72,7 @@ class Maker {
         lower += Vec3f(extent.x * 0.6f, extent.y * 0.1f, extent.z * 0.1f);
         upper = lower + size();
       } else if (how < 0.65f) {  // against
+        is_against = true;
         lower.x = upper.x;
         upper = lower + size();
       } else {
@@ -124,7 +131,8 @@ class Maker {
       m.sheen_color = color(0, 1);
       m.sheen_roughness = between(0.2f, 1);
     }
-    if (chance(0.2f)) m.anisotropy = random_.next1();
+    // A smooth one would be a lobe too narrow for samples of lights and too wide for a mirror.
+    if (m.roughness > 0 && chance(0.2f)) m.anisotropy = random_.next1();
     if (chance(0.15f)) m.iridescence = random_.next1();
     if (chance(0.2f)) {
       m.specular = random_.next1();
