@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks that folders include only leftward (core <- materials <- scene <- integrators <- apps) and that third-party
+"""Checks that folders include only leftward (vernier <- core <- materials <- scene <- integrators <- apps) and that third-party
 headers stay in the files that wrap them."""
 
 import pathlib
@@ -7,16 +7,16 @@ import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-ORDER = ["core", "materials", "scene", "integrators", "apps"]
+ORDER = ["include", "core", "materials", "scene", "integrators", "apps"]
 
 # Headers whose name matches may only be included by files whose path matches.
 WRAPPED = [
     (r"embree[34]/.*", r"scene/accel/embree[^/]*\.(cpp|h)"),
     (r"tiny_gltf\.h", r"scene/import/.*"),
     (r"OpenImageIO/hash\.h", r"core/(base/fingerprint|image/[^/]*)\.cpp"),
-    (r"OpenImageIO/(?!hash\.h).*", r"(core/image/[^/]*|tests/core/.*)\.cpp"),
-    (r"OpenColorIO/.*", r"(core/image/[^/]*|tests/core/.*)\.cpp"),
-    (r"OpenImageDenoise/.*", r"(core/image|tests/oidn)/denoise_oidn[^/]*\.cpp"),
+    (r"OpenImageIO/(?!hash\.h).*", r"(core/(image|denoise)/[^/]*|tests/core/.*)\.cpp"),
+    (r"OpenColorIO/.*", r"(core/display/[^/]*|tests/core/.*)\.cpp"),
+    (r"OpenImageDenoise/.*", r"(core/denoise|tests/oidn)/denoise_oidn[^/]*\.cpp"),
     (r"(draco/.*|meshoptimizer\.h)", r"(tests/)?scene/(import/)?[^/]*\.cpp"),
     (r"CLI/.*", r"apps/.*"),
     (r"(gtest|gmock)/.*", r"tests/.*"),
@@ -27,12 +27,12 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 def problems_of(path):
     folder = path.split("/")[0]
     for bracket, header in INCLUDE.findall((ROOT / path).read_text(encoding="utf-8")):
-        first = header.split("/")[0]
+        first = "include" if header.startswith("vernier/") else header.split("/")[0]
         if bracket == '"' and "/" in header:
             if folder != "tests" and (first == "tests" or
                                       first in ORDER and ORDER.index(first) > ORDER.index(folder)):
                 yield f"{path} includes {header}: {folder} may not see {first}"
-            if first in ORDER + ["tests"] and not (ROOT / header).is_file():
+            if first in ORDER + ["tests"] and not any((ROOT / root / header).is_file() for root in (".", "include")):
                 yield f"{path} includes {header}, which does not exist"
         for wrapped, allowed in WRAPPED:
             if re.fullmatch(wrapped, header) and not re.fullmatch(allowed, path):

@@ -7,8 +7,9 @@
 #include <string_view>
 
 #include "core/math/ray.h"
-#include "core/math/vec.h"
 #include "core/sampling/sampler.h"
+#include "vernier/math.h"
+#include "vernier/settings.h"
 
 namespace vernier {
 
@@ -53,19 +54,6 @@ class Integrator {
 
   /// Block 0 of `sampler` belongs to the camera; the others are free.
   virtual Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler) const = 0;
-};
-
-/// Which technique finds light: both weighted against each other, or one alone, for study and for tests.
-enum class LightSampling { mis, light, bsdf };
-
-/// What the command line can say of any integrator; each reads what it knows.
-struct IntegratorOptions {
-  int max_depth = 16;                                 ///< path vertices after the camera
-  LightSampling light_sampling = LightSampling::mis;  ///< path
-  bool russian_roulette = true;                       ///< path
-  std::string show = "normal";                        ///< raycast: what to show
-  float ambient = 0.05f;                              ///< whitted: constant ambient radiance
-  float cutoff = 1e-3f;  ///< whitted: a recursive ray that would contribute less than this is not traced
 };
 
 /// One line of the table of integrators.

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "core/base/error.h"
 #include "integrators/transport.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

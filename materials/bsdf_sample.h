@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/math/vec.h"
+#include "vernier/math.h"
 
 // Contract of every BSDF. Directions are unit vectors in the local frame with n = +z, both pointing away from
 // the surface; wo is on the side of n (wo.z > 0). wi.z > 0 is reflection, wi.z < 0 transmission. pdf is per

@@ -5,7 +5,7 @@
 #include "materials/bsdf_sample.h"
 #include "materials/fresnel.h"
 #include "materials/ggx.h"
-#include "materials/glass_energy.h"
+#include "materials/tables/glass_energy.h"
 
 namespace vernier {
 

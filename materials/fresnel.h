@@ -1,6 +1,6 @@
 #pragma once
 
-#include "materials/ggx_energy.h"
+#include "materials/tables/ggx_energy.h"
 #include "materials/thin_film.h"
 
 namespace vernier {

@@ -4,7 +4,7 @@
 #include "materials/bsdf_sample.h"
 #include "materials/fresnel.h"
 #include "materials/ggx.h"
-#include "materials/ggx_energy.h"
+#include "materials/tables/ggx_energy.h"
 
 namespace vernier {
 

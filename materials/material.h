@@ -4,8 +4,8 @@
 #include <span>
 
 #include "materials/bsdf.h"
-#include "materials/material_description.h"
-#include "materials/texture.h"
+#include "vernier/material.h"
+#include "vernier/texture.h"
 
 namespace vernier {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "materials/gauss_nodes.h"
+#include "materials/tables/gauss_nodes.h"
 
 namespace vernier {
 namespace {

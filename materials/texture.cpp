@@ -1,4 +1,4 @@
-#include "materials/texture.h"
+#include "vernier/texture.h"
 
 #include <array>
 

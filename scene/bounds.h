@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "core/math/vec.h"
+#include "vernier/math.h"
 
 namespace vernier {
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "core/math/ray.h"
-#include "scene/description.h"
+#include "vernier/scene.h"
 
 namespace vernier {
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "core/math/vec.h"
+#include "vernier/math.h"
 
 namespace vernier {
 

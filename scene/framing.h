@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "scene/description.h"
+#include "vernier/scene.h"
 
 namespace vernier {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "core/math/vec.h"
+#include "vernier/math.h"
 
 namespace vernier {
 

@@ -2,7 +2,7 @@
 
 #include "core/math/ray.h"
 #include "core/math/rounding.h"
-#include "core/math/vec.h"
+#include "vernier/math.h"
 
 namespace vernier {
 

@@ -14,7 +14,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "core/base/error.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "core/base/error.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/base/error.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

@@ -9,8 +9,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/base/error.h"
 #include "core/image/png_repair.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/base/error.h"
 #include "core/image/image_decode.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

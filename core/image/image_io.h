@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/image/image.h"
+#include "vernier/image.h"
 
 namespace vernier {
 

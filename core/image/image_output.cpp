@@ -9,8 +9,8 @@
 #include <filesystem>
 
 #include "core/base/atomic_file.h"
-#include "core/base/error.h"
 #include "core/image/image_io.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

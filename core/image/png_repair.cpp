@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "core/base/error.h"
 #include "core/image/image_header.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "core/math/vec.h"
+#include "vernier/math.h"
 
 namespace vernier {
 

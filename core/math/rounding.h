@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "core/math/vec.h"
+#include "vernier/math.h"
 
 namespace vernier {
 

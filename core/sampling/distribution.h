@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/math/vec.h"
+#include "vernier/math.h"
 
 // Choices among weighted values. They take numbers of full double precision (Sampler::next1_fine()), since a
 // weight may be a tiny part of the sum: what is drawn less often than float can tell has the probability that

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/math/vec.h"
+#include "vernier/math.h"
 
 namespace vernier {
 

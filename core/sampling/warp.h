@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/math/vec.h"
+#include "vernier/math.h"
 
 // Maps from [0,1)^2, each sample_x beside the density x_pdf it produces.
 

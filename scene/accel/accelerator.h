@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/math/ray.h"
-#include "core/math/transform.h"
-#include "scene/description.h"
+#include "vernier/scene.h"
+#include "vernier/transform.h"
 
 namespace vernier {
 

@@ -7,11 +7,11 @@
 #include <deque>
 #include <mutex>
 
-#include "core/base/error.h"
 #include "core/math/rounding.h"
 #include "scene/accel/instance.h"
 #include "scene/accel/query.h"
 #include "scene/accel/triangle_set.h"
+#include "vernier/error.h"
 
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>

@@ -2,9 +2,9 @@
 
 #include <tbb/concurrent_vector.h>
 
-#include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "scene/accel/two_level.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/math/ray.h"
-#include "core/math/vec.h"
+#include "vernier/math.h"
 
 // Two tests of a ray against one triangle. Both sides count, and u, v weigh the second and third vertex as in
 // Embree. They do not look at the ray's interval: the caller compares t.

@@ -4,9 +4,9 @@
 #include <atomic>
 #include <limits>
 
-#include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "scene/accel/triangle.h"
+#include "vernier/error.h"
 
 namespace vernier {
 

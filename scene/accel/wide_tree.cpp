@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "vernier/error.h"
 
 namespace vernier {
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "core/math/simd.h"
-#include "core/math/vec.h"
 #include "scene/accel/accelerator.h"
 #include "scene/accel/huge_pages.h"
 #include "scene/bounds.h"
+#include "vernier/math.h"
 
 // A bounding volume hierarchy of eight children a node over anything that has a box: triangles for `bvh`,
 // instances for the top level of every accelerator here.

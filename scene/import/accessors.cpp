@@ -6,7 +6,7 @@
 #include <cstring>
 #include <type_traits>
 
-#include "core/base/error.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

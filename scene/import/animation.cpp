@@ -5,10 +5,10 @@
 #include <map>
 #include <set>
 
-#include "core/base/error.h"
 #include "core/base/names.h"
 #include "scene/import/animation_track.h"
 #include "scene/import/pose.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

@@ -10,8 +10,8 @@
 #include <cstring>
 #include <filesystem>
 
-#include "core/base/error.h"
 #include "scene/import/data_uri.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

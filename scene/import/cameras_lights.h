@@ -1,8 +1,8 @@
 #pragma once
 
-#include "scene/description.h"
 #include "scene/import/document.h"
 #include "scene/import/nodes.h"
+#include "vernier/scene.h"
 
 namespace vernier {
 

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "core/base/error.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

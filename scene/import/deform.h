@@ -5,9 +5,9 @@
 #include <array>
 #include <vector>
 
-#include "scene/description.h"
 #include "scene/import/document.h"
 #include "scene/import/primitive_data.h"
+#include "vernier/scene.h"
 
 namespace vernier {
 

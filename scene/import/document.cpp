@@ -6,7 +6,6 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "core/base/error.h"
 #include "core/base/fingerprint.h"
 #include "scene/import/container.h"
 #include "scene/import/features.h"
@@ -14,6 +13,7 @@
 #include "scene/import/meshopt.h"
 #include "scene/import/ordered_parallel.h"
 #include "scene/import/schema.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/base/error.h"
 #include "scene/import/asset_files.h"
+#include "vernier/error.h"
 
 // Only sources under scene/import include this header, since it brings tinygltf in.
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/description.h"
+#include "vernier/scene.h"
 
 namespace tinygltf {
 class Model;

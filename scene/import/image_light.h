@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/description.h"
 #include "scene/import/document.h"
+#include "vernier/scene.h"
 
 namespace vernier {
 

@@ -1,4 +1,4 @@
-#include "scene/import/import.h"
+#include "vernier/scene.h"
 
 #include <fmt/format.h>
 

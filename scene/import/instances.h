@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "scene/description.h"
 #include "scene/import/document.h"
 #include "scene/import/materials.h"
 #include "scene/import/meshes.h"
 #include "scene/import/nodes.h"
+#include "vernier/scene.h"
 
 namespace vernier {
 

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-#include "core/base/error.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

@@ -3,10 +3,10 @@
 #include <array>
 #include <vector>
 
-#include "materials/material_description.h"
-#include "scene/description.h"
 #include "scene/import/document.h"
 #include "scene/import/specular_glossiness.h"
+#include "vernier/material.h"
+#include "vernier/scene.h"
 
 namespace vernier {
 

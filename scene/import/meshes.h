@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "scene/description.h"
 #include "scene/import/document.h"
+#include "vernier/scene.h"
 
 namespace vernier {
 

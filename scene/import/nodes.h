@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "core/math/transform.h"
 #include "scene/import/document.h"
 #include "scene/import/pose.h"
+#include "vernier/transform.h"
 
 namespace vernier {
 

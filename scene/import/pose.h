@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/base/error.h"
 #include "scene/import/document.h"
+#include "vernier/error.h"
 
 namespace vernier {
 

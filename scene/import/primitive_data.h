@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "scene/description.h"
 #include "scene/import/document.h"
 #include "scene/import/draco.h"
+#include "vernier/scene.h"
 
 namespace vernier {
 

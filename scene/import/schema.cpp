@@ -6,7 +6,7 @@
 #include <map>
 #include <string_view>
 
-#include "core/base/error.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

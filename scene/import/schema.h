@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/error.h"
+#include "vernier/error.h"
 
 namespace vernier {
 

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "core/image/image.h"
+#include "vernier/image.h"
 
 namespace vernier {
 

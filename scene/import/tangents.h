@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/description.h"
+#include "vernier/scene.h"
 
 namespace vernier {
 

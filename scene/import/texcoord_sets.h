@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "materials/material_description.h"
+#include "vernier/material.h"
 
 namespace vernier {
 

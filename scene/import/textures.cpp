@@ -6,11 +6,11 @@
 #include <map>
 #include <set>
 
-#include "core/base/error.h"
 #include "core/base/fingerprint.h"
 #include "core/image/image_io.h"
 #include "scene/import/data_uri.h"
 #include "scene/import/ordered_parallel.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "scene/description.h"
 #include "scene/import/document.h"
 #include "scene/import/specular_glossiness.h"
+#include "vernier/scene.h"
 
 namespace vernier {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "scene/description.h"
+#include "vernier/scene.h"
 
 namespace vernier {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/description.h"
+#include "vernier/scene.h"
 
 namespace vernier {
 

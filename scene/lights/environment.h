@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "core/sampling/distribution.h"
-#include "scene/description.h"
 #include "scene/lights/light.h"
+#include "vernier/scene.h"
 
 namespace vernier {
 

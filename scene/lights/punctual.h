@@ -1,7 +1,7 @@
 #pragma once
 
-#include "scene/description.h"
 #include "scene/lights/light.h"
+#include "vernier/scene.h"
 
 namespace vernier {
 

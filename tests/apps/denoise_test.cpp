@@ -3,9 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/image/denoise.h"
+#include "core/compare/metrics.h"
+#include "core/denoise/denoise.h"
 #include "core/image/image_io.h"
-#include "core/image/metrics.h"
 #include "tests/support/process.h"
 
 namespace vernier::test {

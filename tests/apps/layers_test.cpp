@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/image/image_io.h"
-#include "integrators/layers.h"
+#include "integrators/render/layers.h"
 #include "tests/support/process.h"
 
 namespace vernier::test {

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/compare/metrics.h"
 #include "core/image/image_io.h"
-#include "core/image/metrics.h"
 #include "tests/support/process.h"
 
 namespace vernier::test {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/image/image_io.h"
-#include "integrators/checkpoint.h"
+#include "integrators/render/checkpoint.h"
 #include "tests/support/process.h"
 
 namespace vernier::test {

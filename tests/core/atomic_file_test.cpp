@@ -8,9 +8,9 @@
 #include <array>
 #include <csignal>
 
-#include "core/base/error.h"
 #include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

@@ -1,12 +1,12 @@
-#include "core/image/bias_test.h"
+#include "core/compare/bias_test.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

@@ -1,8 +1,8 @@
-#include "core/image/convolve.h"
+#include "core/denoise/convolve.h"
 
 #include <gtest/gtest.h>
 
-#include "core/image/colormap.h"
+#include "core/display/colormap.h"
 
 namespace vernier {
 namespace {

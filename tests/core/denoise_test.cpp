@@ -1,13 +1,13 @@
-#include "core/image/denoise.h"
+#include "core/denoise/denoise.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/image/metrics.h"
+#include "core/compare/metrics.h"
+#include "vernier/error.h"
 
 namespace vernier {
 

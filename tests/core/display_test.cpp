@@ -1,4 +1,4 @@
-#include "core/image/display.h"
+#include "core/display/display.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <limits>
 
-#include "core/base/error.h"
 #include "tests/support/temporary_folder.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

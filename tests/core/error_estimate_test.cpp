@@ -1,4 +1,4 @@
-#include "core/image/error_estimate.h"
+#include "core/film/error_estimate.h"
 
 #include <gtest/gtest.h>
 

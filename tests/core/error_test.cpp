@@ -1,4 +1,4 @@
-#include "core/base/error.h"
+#include "vernier/error.h"
 
 #include <gtest/gtest.h>
 

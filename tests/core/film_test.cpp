@@ -1,4 +1,4 @@
-#include "core/image/film.h"
+#include "core/film/film.h"
 
 #include <gtest/gtest.h>
 

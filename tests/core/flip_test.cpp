@@ -1,11 +1,11 @@
-#include "core/image/flip.h"
+#include "core/compare/flip.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <limits>
 
-#include "core/base/error.h"
 #include "tests/support/file_size_limit.h"
 #include "tests/support/png_bytes.h"
 #include "tests/support/temporary_folder.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

@@ -1,12 +1,12 @@
-#include "core/image/metrics.h"
+#include "core/compare/metrics.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

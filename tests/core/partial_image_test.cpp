@@ -2,9 +2,9 @@
 
 #include <webp/encode.h>
 
-#include "core/base/error.h"
 #include "core/image/image_io.h"
 #include "tests/support/temporary_folder.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {

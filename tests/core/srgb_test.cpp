@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/image/image.h"
+#include "vernier/image.h"
 
 namespace vernier {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/math/transform.h"
+#include "vernier/transform.h"
 
 #include <gtest/gtest.h>
 

@@ -12,12 +12,12 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "core/base/error.h"
 #include "core/base/fingerprint.h"
-#include "integrators/checkpoint.h"
+#include "integrators/render/checkpoint.h"
 #include "scene/camera.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_scenes.h"
+#include "vernier/error.h"
 
 namespace vernier::test {
 namespace {
@@ -64,7 +64,7 @@ class CheckpointMutation : public testing::Test {
   CheckpointMutation() {
     options_.width = 36;
     options_.height = 20;
-    options_.spp = 40;
+    options_.limits.spp = 40;
     CameraDescription view;
     view.to_world.origin = {0, 1, 0.95f};
     camera_.emplace(view, options_.width, options_.height);
@@ -82,7 +82,7 @@ class CheckpointMutation : public testing::Test {
       if (!go_on || !checkpoint.state->fits(options_.width, options_.height, true)) return {};
       RenderHooks hooks;
       hooks.from = std::move(checkpoint.state);
-      options_.spp = 49;  // through the end of the pass and a planning
+      options_.limits.spp = 49;  // through the end of the pass and a planning
       render(scene_, *camera_, *integrator_, options_, stop_, std::move(hooks));
       return {};
     } catch (const Error& error) {
@@ -131,7 +131,7 @@ class CheckpointMutation : public testing::Test {
                            .add(parallelogram({-0.3f, 1.9f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}), emitter(5))
                            .build();
   const std::unique_ptr<Integrator> integrator_ = path({.max_depth = 3});
-  RenderOptions options_;
+  RenderSettings options_;
   std::optional<Camera> camera_;
   std::atomic<bool> stop_ = false;
   const TemporaryFolder folder_;

@@ -1,11 +1,11 @@
-#include "integrators/layers.h"
+#include "integrators/render/layers.h"
 
 #include <cmath>
 
-#include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "scene/camera.h"
 #include "tests/support/test_scenes.h"
+#include "vernier/error.h"
 
 namespace vernier::test {
 namespace {
@@ -27,7 +27,7 @@ class Layers : public testing::Test {
  protected:
   Layers() {
     options_.width = options_.height = size;
-    options_.spp = 16;
+    options_.limits.spp = 16;
     options_.adaptive = false;
   }
 
@@ -45,7 +45,7 @@ class Layers : public testing::Test {
     camera.yfov = 1;
     return camera;
   }();
-  RenderOptions options_;
+  RenderSettings options_;
 };
 
 TEST_F(Layers, FirstHitsAreWhatIsThere) {
@@ -96,7 +96,7 @@ TEST_F(Layers, HalvesAreTwoPicturesWithThatMean) {
 }
 
 TEST_F(Layers, EveryLayerAloneIsThatOfAll) {
-  options_.spp = 40;
+  options_.limits.spp = 40;
   options_.adaptive = true;
   const LayeredImage all = picture("all");
   EXPECT_EQ(picture("").channel_names, (std::vector<std::string>{"R", "G", "B"}));

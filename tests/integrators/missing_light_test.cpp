@@ -1,6 +1,6 @@
-#include "integrators/missing_light.h"
+#include "integrators/render/missing_light.h"
 
-#include "integrators/render.h"
+#include "integrators/render/render.h"
 #include "scene/camera.h"
 #include "tests/support/test_scenes.h"
 
@@ -31,9 +31,9 @@ MissingEstimate missing(const Scene& scene, int max_depth, bool adaptive = true,
   camera.yfov = 0.2f;
   IntegratorOptions options;
   options.max_depth = max_depth;
-  RenderOptions render_options;
+  RenderSettings render_options;
   render_options.width = render_options.height = 24;
-  render_options.spp = 64;
+  render_options.limits.spp = 64;
   render_options.adaptive = adaptive;
   const std::atomic<bool> stop = false;
   return render(scene, Camera(camera, 24, 24), *make_integrator(integrator, options), render_options, stop)

@@ -3,11 +3,11 @@
 #include <filesystem>
 
 #include "core/image/image_io.h"
-#include "integrators/render.h"
+#include "integrators/render/render.h"
 #include "scene/camera.h"
-#include "scene/import/import.h"
 #include "scene/scene.h"
 #include "tests/support/test_scenes.h"
+#include "vernier/scene.h"
 
 // Pictures against those of other renderers, where their files lie beside the checkout.
 
@@ -42,9 +42,9 @@ TEST_P(References, AgreeInTheMeanOfEveryBlock) {
   SceneDescription description = import_scene(folder / (name + ".glb"));
   const Camera camera(description.cameras.at(0), size, size);
   const Scene scene(std::move(description), {});
-  RenderOptions options;
+  RenderSettings options;
   options.width = options.height = size;
-  options.spp = 256;
+  options.limits.spp = 256;
   options.adaptive = false;  // which would spare the dark blocks their samples
   const std::atomic<bool> stop = false;
   const Image ours = render(scene, camera, *path({}), options, stop).film.image();

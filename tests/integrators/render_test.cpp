@@ -1,4 +1,4 @@
-#include "integrators/render.h"
+#include "integrators/render/render.h"
 
 #include <fmt/format.h>
 
@@ -29,7 +29,7 @@ CameraDescription camera_description() {
   return camera;
 }
 
-Image picture(const Scene& scene, const Integrator& integrator, const RenderOptions& options) {
+Image picture(const Scene& scene, const Integrator& integrator, const RenderSettings& options) {
   const Camera camera(camera_description(), options.width, options.height);
   const std::atomic<bool> stop = false;
   return render(scene, camera, integrator, options, stop).film.image();
@@ -38,10 +38,10 @@ Image picture(const Scene& scene, const Integrator& integrator, const RenderOpti
 // The same bytes for any number of threads, for each integrator of the table.
 TEST(Render, SameForAnyNumberOfThreads) {
   const Scene room = scene();
-  RenderOptions options;
+  RenderSettings options;
   options.width = 50;
   options.height = 37;
-  options.spp = 20;  // the last four as planned
+  options.limits.spp = 20;  // the last four as planned
   for (const IntegratorEntry& entry : integrators()) {
     const auto integrator = entry.make({});
     Image first;
@@ -60,10 +60,10 @@ TEST(Render, SameForAnyNumberOfThreads) {
 TEST(Render, CropIsAPartOfTheWhole) {
   const Scene room = scene();
   const auto integrator = path({});
-  RenderOptions options;
+  RenderSettings options;
   options.width = 40;
   options.height = 30;
-  options.spp = 4;
+  options.limits.spp = 4;
   const Image whole = picture(room, *integrator, options);
   options.crop = {11, 7, 18, 13};
   const Image part = picture(room, *integrator, options);
@@ -75,9 +75,9 @@ TEST(Render, CropIsAPartOfTheWhole) {
 
 TEST(Render, SeedsDiffer) {
   const Scene room = scene();
-  RenderOptions options;
+  RenderSettings options;
   options.width = options.height = 8;
-  options.spp = 2;
+  options.limits.spp = 2;
   const Image a = picture(room, *path({}), options);
   options.seed = 1;
   EXPECT_NE(picture(room, *path({}), options).values, a.values);
@@ -85,10 +85,10 @@ TEST(Render, SeedsDiffer) {
 
 TEST(Render, StopsWithAPicture) {
   const Scene room = scene();
-  RenderOptions options;
+  RenderSettings options;
   options.width = options.height = 8;
-  options.spp = 0;
-  options.time_limit = 0.01;
+  options.limits.spp = 0;
+  options.limits.seconds = 0.01;
   const Camera camera(camera_description(), 8, 8);
   std::atomic<bool> stop = false;
   const RenderResult timed = render(room, camera, *path({}), options, stop);
@@ -118,14 +118,14 @@ class Fireflies : public Integrator {
 };
 
 /// Means of pictures of the same Fireflies, each of a seed of its own.
-std::vector<double> picture_means(const Fireflies& integrator, const RenderOptions& asked, uint64_t pictures,
+std::vector<double> picture_means(const Fireflies& integrator, const RenderSettings& asked, uint64_t pictures,
                                   uint64_t seed) {
   const Scene nothing = SceneBuilder().build();
   const Camera camera(camera_description(), asked.width, asked.height);
   const std::atomic<bool> stop = false;
   std::vector<double> means(pictures);
   parallel_for(pictures, [&](size_t i) {
-    RenderOptions options = asked;
+    RenderSettings options = asked;
     options.seed = seed * 10'000'000 + i;
     const Image image = render(nothing, camera, integrator, options, stop).film.image();
     for (const float value : image.values) means[i] += value / double(image.values.size());
@@ -143,9 +143,9 @@ void print_mean(const Samples& means) {
 // most samples, has a smaller spread than the mean itself. Significance 1e-3; detects a bias of 0.02 % nine
 // times in ten (the test prints it).
 TEST(Render, AdaptiveSamplingIsUnbiased) {
-  RenderOptions options;
+  RenderSettings options;
   options.width = options.height = 8;
-  options.spp = 48;
+  options.limits.spp = 48;
   EXPECT_TRUE(confirmed(1e-3, 26'000 / thinning, [&](uint64_t seed, uint64_t pictures) {
     const auto mean_of = [&](bool adaptive) {
       options.adaptive = adaptive;
@@ -162,10 +162,10 @@ TEST(Render, AdaptiveSamplingIsUnbiased) {
 // Nor does stopping at an error: a render ends when its estimate is low, which may not mean that its pixels
 // are. Detects a bias of 0.1 %.
 TEST(Render, StoppingAtAnErrorIsUnbiased) {
-  RenderOptions options;
+  RenderSettings options;
   options.width = options.height = 16;
-  options.spp = 0;
-  options.target_error = 0.1;
+  options.limits.spp = 0;
+  options.limits.error = 0.1;
   EXPECT_TRUE(confirmed(1e-3, 1000 / thinning, [&](uint64_t seed, uint64_t pictures) {
     Samples means;
     for (const double mean : picture_means(Fireflies(0.05f), options, pictures, seed)) means.add(mean);
@@ -188,9 +188,9 @@ class Broken : public Integrator {
 // Which bad samples are kept does not depend on the order in which tiles are done.
 TEST(Render, KeepsTheSameBadSamplesForAnyNumberOfThreads) {
   const Scene nothing = SceneBuilder().build();
-  RenderOptions options;
+  RenderSettings options;
   options.width = options.height = 64;
-  options.spp = 6;
+  options.limits.spp = 6;
   const Camera camera(camera_description(), options.width, options.height);
   const std::atomic<bool> stop = false;
   std::vector<BadSample> first;
@@ -210,10 +210,10 @@ TEST(Render, KeepsTheSameBadSamplesForAnyNumberOfThreads) {
 // picture from being rendered: here it waits for the save that follows the last pass.
 TEST(Render, GoesOnWhileTheObserverIsStuck) {
   const Scene nothing = SceneBuilder().build();
-  RenderOptions options;
+  RenderSettings options;
   options.width = options.height = 64;
-  options.spp = 0;
-  options.time_limit = 1;
+  options.limits.spp = 0;
+  options.limits.seconds = 1;
   const Camera camera(camera_description(), options.width, options.height);
   const std::atomic<bool> stop = false;
   std::promise<void> rendered;
@@ -232,10 +232,10 @@ TEST(Render, GoesOnWhileTheObserverIsStuck) {
 // Nor does one that fails.
 TEST(Render, GoesOnWhenTheObserverThrows) {
   const Scene nothing = SceneBuilder().build();
-  RenderOptions options;
+  RenderSettings options;
   options.width = options.height = 64;
-  options.spp = 0;
-  options.time_limit = 0.6;
+  options.limits.spp = 0;
+  options.limits.seconds = 0.6;
   const Camera camera(camera_description(), options.width, options.height);
   const std::atomic<bool> stop = false;
   int told = 0;
@@ -261,10 +261,10 @@ TEST(Render, StopsAtTheErrorAskedFor) {
   const Scene nothing = SceneBuilder().build();
   for (const Stopping& stopping : {Stopping{0.2f, 48, 0.15}, Stopping{0.01f, 16, 0.5}}) {
     const Fireflies integrator(stopping.share);
-    RenderOptions options;
+    RenderSettings options;
     options.width = options.height = stopping.side;
-    options.spp = 0;
-    options.target_error = stopping.asked;
+    options.limits.spp = 0;
+    options.limits.error = stopping.asked;
     const Camera camera(camera_description(), options.width, options.height);
     const std::atomic<bool> stop = false;
     for (const bool adaptive : {false, true}) {
@@ -279,11 +279,11 @@ TEST(Render, StopsAtTheErrorAskedFor) {
         const double error = std::sqrt(squares / (square(double(stopping.side)) * 3) / 1.01);
         largest = std::max(largest, error);
         spp += double(result.samples) / square(double(stopping.side)) / 20;
-        too_wrong += error > 1.1 * options.target_error;
+        too_wrong += error > 1.1 * options.limits.error;
       }
       fmt::print("{} too wrong, {:.0f} samples a pixel\n", too_wrong, spp);
       EXPECT_LE(too_wrong, 1) << stopping.share << (adaptive ? " adaptive" : " even");
-      EXPECT_GT(largest, 0.5 * options.target_error) << stopping.share << adaptive;
+      EXPECT_GT(largest, 0.5 * options.limits.error) << stopping.share << adaptive;
     }
   }
 }

@@ -4,12 +4,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "integrators/checkpoint.h"
+#include "integrators/render/checkpoint.h"
 #include "scene/camera.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_scenes.h"
+#include "vernier/error.h"
 
 namespace vernier::test {
 namespace {
@@ -55,7 +55,7 @@ class Resume : public testing::Test {
 
   const Scene scene_ = room();
   const std::unique_ptr<Integrator> integrator_ = path({.max_depth = 3});
-  RenderOptions options_;
+  RenderSettings options_;
   std::optional<Camera> camera_;
   std::atomic<bool> stop_ = false;
 };
@@ -74,7 +74,7 @@ void expect_same(const RenderResult& a, const RenderResult& b, const std::string
 
 // Wherever it was cut, between passes and within them, the picture is the one that was never cut.
 TEST_F(Resume, SameFromAnyTile) {
-  options_.spp = 40;  // within the pass from 32 to 48
+  options_.limits.spp = 40;  // within the pass from 32 to 48
   for (const bool adaptive : {true, false}) {
     options_.adaptive = adaptive;
     std::optional<ThreadLimit> one_thread(1);
@@ -101,10 +101,10 @@ TEST_F(Resume, LimitsMayGrow) {
     options_.adaptive = adaptive;
     // One sample a pixel, between passes, within passes.
     for (const int first : {1, 16, 21, 83}) {
-      options_.spp = first;
+      options_.limits.spp = first;
       const RenderState state = last_state();
       EXPECT_NEAR(double(state.so_far.samples) / (36 * 20), first, 0.01 * first) << first;
-      options_.spp = 90;
+      options_.limits.spp = 90;
       const RenderResult resumed = go_on(state);
       expect_same(resumed, run(), "from " + std::to_string(first));
       EXPECT_GT(resumed.seconds, state.so_far.seconds);
@@ -113,7 +113,7 @@ TEST_F(Resume, LimitsMayGrow) {
 }
 
 TEST_F(Resume, StoppedBySignalGoesOn) {
-  options_.spp = 70;
+  options_.limits.spp = 70;
   const RenderResult whole = run();
   for (const int cut : {2, 9, 14}) {
     int saves = 0;
@@ -133,10 +133,10 @@ TEST_F(Resume, StoppedBySignalGoesOn) {
 }
 
 TEST_F(Resume, TargetIsLookedAtWhereItWouldHaveBeen) {
-  options_.spp = 100;
+  options_.limits.spp = 100;
   // Reached within the pass that ends at 100 samples, so a look in the midst of it would end it early.
-  options_.target_error = 1.04 * run().error.rel_rmse;
-  options_.spp = 0;
+  options_.limits.error = 1.04 * run().error.rel_rmse;
+  options_.limits.spp = 0;
   const RenderResult whole = run();
   ASSERT_EQ(whole.reason, StopReason::error);
   const double spp = double(whole.samples) / (36 * 20);
@@ -149,24 +149,24 @@ TEST_F(Resume, TargetIsLookedAtWhereItWouldHaveBeen) {
   for (size_t i = 0; i < states.size(); i += i + 8 < states.size() ? 3 : 1)
     expect_same(go_on(states[i]), whole, "state " + std::to_string(i));
   // It is enough already.
-  options_.target_error *= 2;
+  options_.limits.error *= 2;
   const RenderResult again = go_on(states.back());
   EXPECT_EQ(again.samples, whole.samples);
   EXPECT_EQ(again.reason, StopReason::error);
 }
 
 TEST_F(Resume, NothingIsRenderedWhenItIsEnough) {
-  options_.spp = 40;
+  options_.limits.spp = 40;
   const RenderState state = last_state();
   for (const int spp : {40, 33, 20, 1}) {
-    options_.spp = spp;
+    options_.limits.spp = spp;
     const RenderResult result = go_on(state);
     EXPECT_EQ(result.samples, state.so_far.samples);
     EXPECT_EQ(result.reason, StopReason::samples);
     EXPECT_EQ(result.film.image().values, state.so_far.film.image().values);
   }
-  options_.spp = 400;
-  options_.time_limit = state.so_far.seconds / 2;
+  options_.limits.spp = 400;
+  options_.limits.seconds = state.so_far.seconds / 2;
   EXPECT_EQ(go_on(state).reason, StopReason::time);
   EXPECT_EQ(go_on(state).samples, state.so_far.samples);
 }
@@ -175,7 +175,7 @@ TEST_F(Resume, NothingIsRenderedWhenItIsEnough) {
 class CheckpointFile : public Resume {
  protected:
   CheckpointFile() {
-    options_.spp = 40;
+    options_.limits.spp = 40;
     write_checkpoint(path_, identity_, last_state());
   }
   std::string complaint(const std::string& bytes) {
@@ -202,7 +202,7 @@ TEST_F(CheckpointFile, HoldsAll) {
   EXPECT_EQ(state.pass.size(), 16u);
   EXPECT_EQ(state.done, 32u);
   EXPECT_EQ(state.so_far.convergence.size(), 2u);
-  options_.spp = 70;
+  options_.limits.spp = 70;
   expect_same(go_on(state), run(), "from a file");
   // The same file again.
   write_checkpoint(folder_.file("c.ckpt"), identity_, state);

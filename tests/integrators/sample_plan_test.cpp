@@ -1,4 +1,4 @@
-#include "integrators/sample_plan.h"
+#include "integrators/render/sample_plan.h"
 
 #include <gtest/gtest.h>
 

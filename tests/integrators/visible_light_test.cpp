@@ -1,4 +1,4 @@
-#include "integrators/visible_light.h"
+#include "integrators/render/visible_light.h"
 
 #include <gtest/gtest.h>
 

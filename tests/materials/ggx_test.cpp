@@ -2,7 +2,7 @@
 
 #include "materials/fresnel.h"
 #include "materials/ggx.h"
-#include "materials/ggx_energy.h"
+#include "materials/tables/ggx_energy.h"
 #include "tests/materials/bsdf_cases.h"
 #include "tests/support/quadrature.h"
 #include "tests/support/random.h"

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/image/denoise_filters.h"
+#include "core/denoise/denoise_filters.h"
+#include "vernier/error.h"
 
 // The adapter to Open Image Denoise, compiled against a double of that library. What the network makes of a
 // picture only a build with the library can test (tests/core/denoise_test.cpp).

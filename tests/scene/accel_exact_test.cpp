@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "scene/accel/proof/exact.h"
-#include "scene/accel/proof/soup.h"
+#include "apps/validation/exact.h"
+#include "apps/validation/soup.h"
 #include "scene/accel/triangle_block.h"
 #include "scene/accel/triangle_set.h"
 #include "tests/support/effort.h"
@@ -9,12 +9,12 @@
 namespace vernier {
 namespace {
 
-using proof::Corners;
-using proof::Dice;
-using proof::distance_to_boundary;
-using proof::ExactHit;
-using proof::intersect_exactly;
-using proof::is_near_boundary;
+using validation::Corners;
+using validation::Dice;
+using validation::distance_to_boundary;
+using validation::ExactHit;
+using validation::intersect_exactly;
+using validation::is_near_boundary;
 using Kind = ExactHit::Kind;
 
 const Corners unit_triangle{Vec3f{0, 0, 0}, Vec3f{1, 0, 0}, Vec3f{0, 1, 0}};

@@ -3,14 +3,14 @@
 #include <atomic>
 #include <cmath>
 
-#include "integrators/render.h"
-#include "scene/accel/proof/exact.h"
+#include "apps/validation/exact.h"
+#include "integrators/render/render.h"
 #include "scene/camera.h"
 #include "scene/framing.h"
-#include "scene/import/import.h"
 #include "scene/subject.h"
 #include "tests/scene/accel_support.h"
 #include "tests/support/test_scenes.h"
+#include "vernier/scene.h"
 
 // What a user sees of the choice of accelerator: nothing.
 
@@ -61,9 +61,10 @@ bool is_excused(const Scene& scene, const Ray& ray, const std::optional<SurfaceP
     return scene.geometry().triangle(p.instance, p.primitive);
   };
   for (const auto* hit : {&a, &b})
-    if (*hit && proof::is_near_boundary(ray, corners(**hit))) return true;
+    if (*hit && validation::is_near_boundary(ray, corners(**hit))) return true;
   if (!a || !b) return false;
-  const auto x = proof::intersect_exactly(ray, corners(*a)), y = proof::intersect_exactly(ray, corners(*b));
+  const auto x = validation::intersect_exactly(ray, corners(*a)),
+             y = validation::intersect_exactly(ray, corners(*b));
   return std::abs(x.t - y.t) <= x.t_bound + y.t_bound;
 }
 
@@ -85,7 +86,7 @@ TEST_P(AcceleratorImages, ShowTheSameTrianglesAtTheSameDepths) {
           ASSERT_TRUE(is_excused(mine.scene, ray, a, b)) << name << " pixel " << x << ' ' << y;
         } else if (a) {
           const auto exact =
-              proof::intersect_exactly(ray, mine.scene.geometry().triangle(a->instance, a->primitive));
+              validation::intersect_exactly(ray, mine.scene.geometry().triangle(a->instance, a->primitive));
           ASSERT_LE(std::abs(a->t - exact.t), exact.t_bound) << name << " pixel " << x << ' ' << y;
           ASSERT_LE(std::abs(b->t - exact.t), exact.t_bound) << name << " pixel " << x << ' ' << y;
         }
@@ -99,10 +100,10 @@ TEST_P(AcceleratorImages, ShowTheSameTrianglesAtTheSameDepths) {
 TEST_P(AcceleratorImages, ConvergeToTheSamePicture) {
   if (GetParam().name == "brute_force") return;  // minutes, on the spheres
   const auto integrator = test::make_integrator("path", {});
-  RenderOptions options;
+  RenderSettings options;
   options.width = width;
   options.height = height;
-  options.spp = 8;
+  options.limits.spp = 8;
   options.adaptive = false;
   const std::atomic<bool> stop = false;
   for (const char* name : scenes) {

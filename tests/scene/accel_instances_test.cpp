@@ -1,11 +1,11 @@
+#include "apps/validation/agreement.h"
 #include "scene/accel/instance.h"
-#include "scene/accel/proof/agreement.h"
 #include "tests/scene/accel_support.h"
 
 namespace vernier {
 namespace {
 
-using namespace proof;
+using namespace validation;
 using test::EveryAccelerator;
 using test::make_ray;
 

@@ -1,13 +1,13 @@
+#include "apps/validation/agreement.h"
+#include "apps/validation/invariance.h"
+#include "apps/validation/limits.h"
 #include "scene/accel/bvh.h"
-#include "scene/accel/proof/agreement.h"
-#include "scene/accel/proof/invariance.h"
-#include "scene/accel/proof/limits.h"
 #include "tests/scene/accel_support.h"
 
 namespace vernier {
 namespace {
 
-using namespace proof;
+using namespace validation;
 using test::EveryAccelerator;
 using test::make_ray;
 using test::same_bits;

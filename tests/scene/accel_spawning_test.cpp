@@ -1,11 +1,11 @@
+#include "apps/validation/spawning.h"
 #include "scene/accel/bvh.h"
-#include "scene/accel/proof/spawning.h"
 #include "tests/scene/accel_support.h"
 
 namespace vernier {
 namespace {
 
-using namespace proof;
+using namespace validation;
 using test::EveryAccelerator;
 
 constexpr uint64_t rays = 20'000;

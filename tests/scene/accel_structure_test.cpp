@@ -1,17 +1,17 @@
+#include "apps/validation/agreement.h"
+#include "apps/validation/structure.h"
 #include "core/base/names.h"
 #include "core/base/parallel.h"
 #include "scene/accel/brute_force.h"
 #include "scene/accel/bvh.h"
 #include "scene/accel/octree.h"
-#include "scene/accel/proof/agreement.h"
-#include "scene/accel/proof/structure.h"
 #include "tests/scene/accel_support.h"
 #include "tests/support/effort.h"
 
 namespace vernier {
 namespace {
 
-using namespace proof;
+using namespace validation;
 using test::EveryAccelerator;
 using test::make_ray;
 using test::same_bits;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <string>
 
+#include "apps/validation/soup.h"
 #include "scene/accel/accelerator.h"
-#include "scene/accel/proof/soup.h"
 
 namespace vernier {
 
@@ -20,7 +20,7 @@ namespace vernier::test {
 /// A test that every line of accelerators() goes through.
 class EveryAccelerator : public testing::TestWithParam<AcceleratorEntry> {
  protected:
-  std::unique_ptr<Accelerator> build(const proof::Soup& soup) const {
+  std::unique_ptr<Accelerator> build(const validation::Soup& soup) const {
     return GetParam().build(soup.geometry());
   }
 };

@@ -1,6 +1,6 @@
+#include "apps/validation/agreement.h"
+#include "apps/validation/leaks.h"
 #include "scene/accel/bvh.h"
-#include "scene/accel/proof/agreement.h"
-#include "scene/accel/proof/leaks.h"
 #include "tests/scene/accel_support.h"
 #include "tests/support/effort.h"
 
@@ -10,7 +10,7 @@
 namespace vernier {
 namespace {
 
-using namespace proof;
+using namespace validation;
 using test::EveryAccelerator;
 
 constexpr uint64_t rays = 300'000 / test::thinning;
@@ -59,7 +59,7 @@ class Agreement : public EveryAccelerator {};
 // The tests above would pass an accelerator that always hits, so: what is missed must be missed.
 TEST_P(Agreement, DoesNotHitBesideTriangles) {
   const float tolerance = 1e-3f;
-  proof::Soup soup;
+  validation::Soup soup;
   soup.add({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
   const auto accelerator = build(soup);
   for (const Vec3f& outside :

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "core/base/error.h"
-#include "scene/import/import.h"
 #include "tests/support/temporary_folder.h"
+#include "vernier/error.h"
+#include "vernier/scene.h"
 
 namespace vernier::test {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/math/ray.h"
-#include "scene/description.h"
+#include "vernier/scene.h"
 
 namespace vernier::test {
 

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string_view>
+
+#include "apps/report/html_page.h"
+#include "vernier/image.h"
+
+// Pieces that several pages are made of.
+
+namespace vernier::apps {
+
+/// Pixels averaged in square blocks until neither side is longer than `longest`.
+Image shrink(const Image& image, int longest);
+
+/// Part of `image`.
+Image cut(const Image& image, int x, int y, int width, int height);
+
+/// A round number, 1, 2 or 5 times a power of ten, that at least 99 of 100 values do not exceed; 1 when all
+/// are zero. Values that are not finite do not count.
+double round_scale(const Image& map);
+
+/// A one-channel map in colours, with a caption that tells what dark and pale stand for:
+/// "CAPTION. Black 0, pale yellow 20 % and more."
+Figure map_figure(const Image& map, double largest, std::string_view caption, bool as_percent);
+
+/// From the first drawn point of `curve` to its last abscissa, falling as one over the square root: the error
+/// of sampling without bias.
+Curve square_root_guide(const Curve& curve);
+
+/// The machine and what the program was built with, from those parts of docs/stats.md.
+void add_machine(HtmlPage& page, const nlohmann::ordered_json& machine,
+                 const nlohmann::ordered_json& built_with);
+
+}  // namespace vernier::apps

@@ -1,0 +1,272 @@
+#include "apps/report/report_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "apps/report/html_page.h"
+#include "apps/report/page_parts.h"
+#include "core/base/quantities.h"
+#include "core/display/colormap.h"
+#include "core/film/error_estimate.h"
+
+namespace vernier::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int longest_picture = 1600;  // pixels: more is for the picture's own file
+constexpr int longest_map = 800;
+
+std::string percent(const Json& part) {
+  return part.is_number() ? fmt::format("{:.3g} %", 100 * part.get<double>()) : "not known";
+}
+
+std::string seconds(const Json& value) { return format_seconds(value.get<double>()); }
+
+std::string count(const Json& value) { return format_count(value.get<double>()); }
+
+std::string stopped_by(const Json& stats) {
+  const auto& reason = stats["picture"]["stopped_by"];
+  if (reason == "error") return "error reached";
+  if (reason == "interrupted") return "interrupted";
+  const std::string text = reason == "samples" ? "all samples taken" : "time limit";
+  const Json& error = stats["picture"]["asked"]["rel_rmse"];
+  const bool missed = error.is_number() && !(stats["error"]["rel_rmse"] <= error);
+  return !missed ? text : fmt::format("{}, before the error of {}", text, percent(error));
+}
+
+/// Square root of the channels' mean squared relative standard error, as --error counts it.
+Image relative_error(const Image& picture, const Image& error) {
+  Image map(picture.width, picture.height, 1);
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      double sum = 0;
+      for (int c = 0; c < 3; ++c) {
+        const double value = picture.pixel(x, y)[c], off = error.pixel(x, y)[c];
+        sum += off * off / (value * value + 0.01);
+      }
+      *map.pixel(x, y) = float(std::sqrt(sum / 3));
+    }
+  return map;
+}
+
+Image sample_counts(const Film& film) {
+  Image map(film.width(), film.height(), 1);
+  for (int y = 0; y < film.height(); ++y)
+    for (int x = 0; x < film.width(); ++x) *map.pixel(x, y) = float(film.samples(x, y));
+  return map;
+}
+
+/// "3.5 to 3.9 %"
+std::string interval(const Json& error) {
+  if (!error.contains("low") || !error["low"].is_number()) return "not known";
+  return fmt::format("{:.3g} to {}", 100 * error["low"].get<double>(), percent(error["high"]));
+}
+
+/// "3.7 % (3.5 to 3.9 %)"
+std::string with_interval(const Json& error) {
+  if (!error.contains("rel_rmse") || !error["rel_rmse"].is_number()) return "not known";
+  return fmt::format("{} ({})", percent(error["rel_rmse"]), interval(error));
+}
+
+void add_key_figures(HtmlPage& page, const Json& stats) {
+  const Json& error = stats["error"];
+  std::vector<std::array<std::string, 2>> figures{
+      {"estimated error (relative RMSE)", percent(error["rel_rmse"])}, {"95 % interval", interval(error)}};
+  if (stats.contains("denoised")) {
+    const Json& denoised = stats["denoised"];
+    figures[0][0] = "estimated error as rendered";
+    figures.insert(figures.begin(),
+                   {{"estimated error, denoised (relative RMSE)",
+                     denoised.contains("rel_rmse") ? percent(denoised["rel_rmse"]) : "not known"},
+                    {"95 % interval", interval(denoised)}});
+  }
+  figures.insert(figures.end(), {{"pixels not to be trusted", percent(error["unreliable"])},
+                                 {"samples a pixel",
+                                  fmt::format("{:.4g}", stats["picture"]["samples_per_pixel"].get<double>())},
+                                 {"rendering", seconds(stats["seconds"]["render"])},
+                                 {"rays a second", count(stats["rays"]["per_second"])},
+                                 {"peak memory", format_bytes(stats["peak_memory_bytes"].get<double>())}});
+  page.key_figures(figures);
+}
+
+/// The picture; when there is a denoised one, that and the noisy one beside it, each with its error.
+void add_pictures(HtmlPage& page, const Json& stats, const Film& film,
+                  const std::optional<Denoised>& denoised, const DisplayOptions& display) {
+  const auto figure = [&](const Image& picture, const std::string& caption) {
+    return Figure{to_display(shrink(picture, longest_picture), display),
+                  fmt::format("{}View \"{}\"", caption, display.view)};
+  };
+  if (!denoised) {
+    page.figures({figure(film.image(), "")});
+    return;
+  }
+  const Json& error = stats["denoised"];
+  std::string noisy = "As rendered: estimated error " + with_interval(stats["error"]);
+  if (denoised->error)
+    noisy += fmt::format(", {} when measured like the denoised picture's", percent(error["rel_rmse_before"]));
+  page.figures(
+      {figure(denoised->picture, fmt::format("Denoised by {}: estimated error {}. ",
+                                             error["filter"].get<std::string>(), with_interval(error))),
+       figure(film.image(), noisy + ". ")});
+}
+
+void add_error_maps(HtmlPage& page, const Film& film, const std::optional<Denoised>& denoised) {
+  page.section("Where it is uncertain");
+  const ErrorLayers layers = error_layers(film);
+  const Image error = shrink(relative_error(film.image(), layers.standard_error), longest_map);
+  const Image counts = shrink(sample_counts(film), longest_map);
+  const double scale = round_scale(error);
+  std::vector<Figure> figures{map_figure(error, scale, "Estimated relative standard error", true)};
+  const auto [fewest, most] = std::minmax_element(counts.values.begin(), counts.values.end());
+  if (*fewest < *most) figures.push_back(map_figure(counts, round_scale(counts), "Samples", false));
+  figures.push_back(
+      {colormap(shrink(layers.unreliable, longest_map)), "Pixels not to be trusted: pale", false});
+  if (denoised && denoised->pixel_error) {
+    const Image left = shrink(relative_error(denoised->picture, *denoised->pixel_error), longest_map);
+    figures.insert(figures.begin(), map_figure(left, scale, "The same after denoising, blur included", true));
+    std::swap(figures[0], figures[1]);
+  }
+  page.figures(figures);
+  page.paragraph(
+      "The error is that of sampling only. A pixel is not to be trusted when what is known of it comes from "
+      "too few samples: its error may be larger than estimated.");
+}
+
+void add_convergence(HtmlPage& page, const Json& stats) {
+  Curve over_time{"estimated, with 95 % interval", {}, {}, false};
+  Table table{{"seconds", "samples a pixel", "error", "low", "high", "not to be trusted"}, {}};
+  Curve over_samples = over_time;
+  for (const Json& row : stats["convergence"]) {
+    const Json& error = row["error"];
+    if (!error["rel_rmse"].is_number()) continue;
+    const double y = error["rel_rmse"], spp = row["samples_per_pixel"], time = row["seconds"];
+    over_time.points.push_back({time, y});
+    over_samples.points.push_back({spp, y});
+    over_time.band.push_back({error["low"], error["high"]});
+    table.rows.push_back({fmt::format("{:.3f}", time), fmt::format("{:.4g}", spp), percent(y),
+                          percent(error["low"]), percent(error["high"]), percent(error["unreliable"])});
+  }
+  page.section("How the error fell");
+  if (table.rows.empty()) {
+    page.paragraph("The error was not estimated: that takes 16 samples a pixel.");
+    return;
+  }
+  over_samples.band = over_time.band;
+  if (table.rows.size() > 1)
+    page.charts({{"seconds of rendering", "relative RMSE", {over_time, square_root_guide(over_time)}},
+                 {"samples a pixel", "relative RMSE", {over_samples, square_root_guide(over_samples)}}});
+  page.table(table);
+}
+
+void add_time_and_rays(HtmlPage& page, const Json& stats) {
+  const Json& time = stats["seconds"];
+  const Json& rays = stats["rays"];
+  page.section("Time and rays");
+  const auto part = [](const char* name, const Json& value) {
+    return BarPart{name, value.get<double>(), seconds(value)};
+  };
+  page.bar({part("load", time["load"]), part("build", time["build"]), part("render", time["render"]),
+            part("output", time["output"])});
+  const auto ray_part = [](const char* name, const Json& value) {
+    return BarPart{name, value.get<double>(), count(value)};
+  };
+  page.bar({ray_part("camera rays", rays["camera"]), ray_part("bounce rays", rays["bounce"]),
+            ray_part("shadow rays", rays["shadow"])});
+  if (stats["profile"].is_object()) {
+    std::vector<BarPart> parts;
+    for (const auto& [name, share] : stats["profile"]["shares"].items())
+      parts.push_back({name, share.get<double>(), ""});
+    page.bar(parts);
+    page.paragraph(fmt::format("The last bar is processor time while rendering, sampled {} times.",
+                               stats["profile"]["samples"].get<size_t>()));
+  }
+  const Json& accelerator = stats["accelerator"];
+  page.facts({{"rays", fmt::format("{}, {} a second", count(rays["total"]), count(rays["per_second"]))},
+              {"samples", fmt::format("{}, {} a second", count(stats["picture"]["samples"]),
+                                      count(rays["samples_per_second"]))},
+              {"processor time", fmt::format("{} on {} threads", seconds(time["cpu"]),
+                                             stats["machine"]["threads"].get<unsigned>())},
+              {"accelerator", fmt::format("{}, built in {}, {}", accelerator["name"].get<std::string>(),
+                                          seconds(accelerator["build_seconds"]),
+                                          format_bytes(accelerator["bytes"].get<double>()))},
+              {"peak memory", format_bytes(stats["peak_memory_bytes"].get<double>())}});
+  if (stats.contains("resumed"))
+    page.paragraph(fmt::format(
+        "Rendering went on from {}, where {:.4g} samples a pixel and {} of rendering were done. They count "
+        "here; load, build, output and processor time are those of the last part.",
+        stats["resumed"]["file"].get<std::string>(), stats["resumed"]["samples_per_pixel"].get<double>(),
+        seconds(stats["resumed"]["seconds"])));
+}
+
+void add_scene(HtmlPage& page, const Json& stats) {
+  const Json& counts = stats["scene"]["counts"];
+  const Json& picture = stats["picture"];
+  page.section("Scene and picture");
+  page.facts(
+      {{"scene", stats["scene"]["file"]},
+       {"fingerprint", stats["scene"]["hash"]},
+       {"triangles", fmt::format("{} stored, {} with instances", count(counts["triangles"]),
+                                 count(counts["instanced_triangles"]))},
+       {"materials, textures",
+        fmt::format("{}, {} ({})", count(counts["materials"]), count(counts["textures"]),
+                    format_bytes(counts["texture_bytes"].get<double>()))},
+       {"lights", fmt::format("{} punctual, {} emissive triangles{}", count(counts["punctual_lights"]),
+                              count(counts["emissive_triangles"]),
+                              counts["environment"].get<bool>() ? ", an environment" : "")},
+       {"camera", picture["camera"]},
+       {"size", fmt::format("{} x {}{}", picture["width"].get<int>(), picture["height"].get<int>(),
+                            picture.contains("crop") ? ", part " + picture["crop"].get<std::string>() : "")},
+       {"integrator", fmt::format("{}, at most {} path vertices", picture["integrator"].get<std::string>(),
+                                  picture["max_depth"].get<int>())},
+       {"seed", fmt::format("{}", picture["seed"].get<uint64_t>())},
+       {"ended by", stopped_by(stats)}});
+}
+
+void add_notices(HtmlPage& page, const Json& stats) {
+  page.section("Warnings and notes");
+  std::vector<std::string> lines;
+  for (const Json& notice : stats["notices"]) {
+    const std::string place = notice["place"];
+    lines.push_back(fmt::format("{}: {}{}{}", notice["severity"].get<std::string>(), place,
+                                place.empty() ? "" : ": ", notice["text"].get<std::string>()));
+  }
+  if (lines.empty())
+    page.paragraph("None.");
+  else
+    page.list(lines);
+}
+
+void add_reproduction(HtmlPage& page, const Json& stats) {
+  page.section("To do it again");
+  page.command(stats["command"].get<std::string>());
+  if (stats.contains("resumed"))
+    page.paragraph("Without --resume the same command renders the same picture from the beginning.");
+  add_machine(page, stats["machine"], stats["built_with"]);
+}
+
+}  // namespace
+
+std::string report_page(const Json& stats, const Film& film, const std::optional<Denoised>& denoised,
+                        const DisplayOptions& display) {
+  const std::string scene = std::filesystem::path(stats["scene"]["file"].get<std::string>()).filename();
+  HtmlPage page("Render of " + scene,
+                fmt::format("vernier {}, {} integrator, {} x {} pixels", stats["vernier"].get<std::string>(),
+                            stats["picture"]["integrator"].get<std::string>(), film.width(), film.height()));
+  add_key_figures(page, stats);
+  add_pictures(page, stats, film, denoised, display);
+  add_error_maps(page, film, denoised);
+  add_convergence(page, stats);
+  add_time_and_rays(page, stats);
+  add_scene(page, stats);
+  add_notices(page, stats);
+  add_reproduction(page, stats);
+  page.data("stats", stats);
+  return page.text();
+}
+
+}  // namespace vernier::apps

@@ -1,0 +1,142 @@
+#include "apps/validation/soup.h"
+
+#include <map>
+
+#include "core/math/frame.h"
+
+namespace vernier::validation {
+
+Vec3f Dice::direction() {
+  while (true) {
+    const Vec3f v = in_cube(1);
+    if (const float l2 = length_squared(v); l2 > 0.01f && l2 < 1) return normalize(v);
+  }
+}
+
+uint32_t Soup::add_mesh(std::vector<Vec3f> positions, std::vector<Triangle> triangles) {
+  const size_t count = positions.size();
+  positions.resize(count + 2);  // GeometryMesh asks for readable bytes past the end
+  positions_.push_back(std::move(positions));
+  triangles_.push_back(std::move(triangles));
+  geometry_.meshes.push_back({std::span(positions_.back()).first(count), triangles_.back()});
+  return static_cast<uint32_t>(geometry_.meshes.size() - 1);
+}
+
+uint32_t Soup::add_instance(uint32_t mesh, const Transform& to_world, bool filtered) {
+  geometry_.instances.push_back({mesh, to_world, filtered});
+  return static_cast<uint32_t>(geometry_.instances.size() - 1);
+}
+
+Corners Soup::corners(uint32_t instance, uint32_t primitive) const {
+  const GeometryInstance& placed = geometry_.instances[instance];
+  const GeometryMesh& mesh = geometry_.meshes[placed.mesh];
+  const Triangle& triangle = mesh.triangles[primitive];
+  Corners corners;
+  for (size_t i = 0; i < 3; ++i) {
+    corners[i] = mesh.positions[triangle[i]];
+    if (!placed.to_world.is_identity()) corners[i] = placed.to_world.point(corners[i]);
+  }
+  return corners;
+}
+
+namespace {
+
+void rotate_corners(Triangle& triangle, Dice& dice) {
+  std::rotate(triangle.begin(), triangle.begin() + dice.below(3), triangle.end());
+}
+
+}  // namespace
+
+void add_folded_quad(Soup& soup, Dice& dice, float size, const Vec3f& center) {
+  const Frame frame = Frame::from_normal(dice.direction());
+  const auto place = [&](float x, float y, float z) {
+    return center +
+           size * (frame.x * (x + dice.uniform(-.2f, .2f)) + frame.y * (y + dice.uniform(-.2f, .2f)) +
+                   frame.z * (z + dice.uniform(-.1f, .1f)));
+  };
+  std::vector<Vec3f> positions{place(0, 0, 0), place(1, 0, 0), place(0, 1, 0), place(1, 1, 0)};
+  std::vector<Triangle> triangles{{0, 1, 2}, {2, 1, 3}};
+  for (Triangle& triangle : triangles) rotate_corners(triangle, dice);
+  soup.add(std::move(positions), std::move(triangles));
+}
+
+void add_fan(Soup& soup, Dice& dice, float size, const Vec3f& center) {
+  const Frame frame = Frame::from_normal(dice.direction());
+  std::vector<Vec3f> positions{center};
+  std::vector<Triangle> triangles;
+  for (uint32_t i = 0; i < 6; ++i) {
+    const float angle = (float(i) + dice.uniform(-.3f, .3f)) * (2 * pi / 6),
+                radius = size * dice.uniform(.5f, 1);
+    positions.push_back(center + frame.x * (radius * std::cos(angle)) + frame.y * (radius * std::sin(angle)) +
+                        frame.z * (size * dice.uniform(-.1f, .1f)));
+    triangles.push_back({0, i + 1, (i + 1) % 6 + 1});
+    rotate_corners(triangles.back(), dice);
+  }
+  soup.add(std::move(positions), std::move(triangles));
+}
+
+void add_blob(Soup& soup, Dice& dice, unsigned levels, float radius, const Vec3f& center) {
+  const float a = 0.525731112f, b = 0.850650808f;  // icosahedron
+  std::vector<Vec3f> directions{{-a, b, 0},  {a, b, 0},  {-a, -b, 0}, {a, -b, 0}, {0, -a, b},  {0, a, b},
+                                {0, -a, -b}, {0, a, -b}, {b, 0, -a},  {b, 0, a},  {-b, 0, -a}, {-b, 0, a}};
+  std::vector<Triangle> triangles{{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                  {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                  {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                  {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+  for (unsigned level = 0; level < levels; ++level) {
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> middles;
+    const auto middle = [&](uint32_t i, uint32_t j) {
+      const auto [entry, is_new] =
+          middles.try_emplace(std::minmax(i, j), static_cast<uint32_t>(directions.size()));
+      if (is_new) directions.push_back(normalize(directions[i] + directions[j]));
+      return entry->second;
+    };
+    std::vector<Triangle> finer;
+    for (const auto& [i, j, k] : triangles) {
+      const uint32_t ij = middle(i, j), jk = middle(j, k), ki = middle(k, i);
+      finer.insert(finer.end(), {{i, ij, ki}, {j, jk, ij}, {k, ki, jk}, {ij, jk, ki}});
+    }
+    triangles = std::move(finer);
+  }
+  std::vector<Vec3f> positions;
+  positions.reserve(directions.size());
+  for (const Vec3f& direction : directions)
+    positions.push_back(center + direction * (radius * dice.uniform(.7f, 1)));
+  for (Triangle& triangle : triangles) rotate_corners(triangle, dice);
+  soup.add(std::move(positions), std::move(triangles));
+}
+
+void add_waves(Soup& soup, unsigned n) {
+  std::vector<Vec3f> positions;
+  std::vector<Triangle> triangles;
+  for (unsigned j = 0; j <= n; ++j)
+    for (unsigned i = 0; i <= n; ++i) {
+      const float x = 2 * float(i) / float(n) - 1, y = 2 * float(j) / float(n) - 1;
+      positions.emplace_back(x, y, 0.1f * std::sin(7 * x) * std::cos(5 * y));
+    }
+  for (unsigned j = 0; j < n; ++j)
+    for (unsigned i = 0; i < n; ++i) {
+      const uint32_t a = j * (n + 1) + i, b = a + n + 1;
+      triangles.insert(triangles.end(), {{a, a + 1, b}, {a + 1, b + 1, b}});
+    }
+  soup.add(std::move(positions), std::move(triangles));
+}
+
+void add_random_triangles(Soup& soup, Dice& dice, uint32_t count, float size) {
+  std::vector<Vec3f> positions;
+  std::vector<Triangle> triangles;
+  for (uint32_t i = 0; i < count; ++i) {
+    const Vec3f center = dice.in_cube(1);
+    for (int k = 0; k < 3; ++k) positions.push_back(center + dice.in_cube(size));
+    triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  soup.add(std::move(positions), std::move(triangles));
+}
+
+Transform random_placement(Dice& dice, const Vec3f& scale, const Vec3f& origin) {
+  const Vec3f axis = dice.direction();
+  const Frame frame = Frame::from_normal_tangent(axis, dice.direction());
+  return {frame.x * scale.x, frame.y * scale.y, frame.z * scale.z, origin};
+}
+
+}  // namespace vernier::validation

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "apps/vernier/commands.h"
+
+namespace vernier::apps {
+
+/// How the scene is to be seen, as typed. Angles in degrees.
+struct CameraFlags {
+  std::string camera;  ///< of the scene, name or number
+  std::optional<float> azimuth, elevation;
+  std::string fit;  ///< margin; empty: not given
+  std::string look_from, look_at, up;
+  float roll = 0, zoom = 1;
+  std::optional<float> fov;
+  bool ortho = false;
+  std::optional<float> ortho_height;  ///< metres
+
+  /// Whether the camera is to stand where the scene fits the picture.
+  bool orbits() const { return azimuth || elevation || !fit.empty(); }
+};
+
+/// Declares the flags on `command`. Throws Error(usage), when it is parsed, on flags that contradict each
+/// other.
+void add_camera_flags(CLI::App& command, CameraFlags& flags);
+
+}  // namespace vernier::apps

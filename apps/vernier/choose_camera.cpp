@@ -1,0 +1,234 @@
+#include "apps/vernier/choose_camera.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "core/base/names.h"
+#include "core/base/quantities.h"
+#include "core/math/frame.h"
+#include "scene/framing.h"
+#include "scene/subject.h"
+#include "vernier/error.h"
+
+namespace vernier::apps {
+namespace {
+
+constexpr float default_aspect = 16.0f / 9;
+constexpr float default_margin = 0.08f;
+constexpr float default_yfov = 40 * pi / 180;
+/// From the front right and a little above, as product pictures are taken; degrees.
+constexpr float default_azimuth = 30, default_elevation = 15;
+
+std::optional<size_t> parse_index(const std::string& text) {
+  size_t index = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  if (error != std::errc{} || end != text.data() + text.size()) return {};
+  return index;
+}
+
+std::string label(std::span<const CameraDescription> cameras, size_t index) {
+  return fmt::format("{}{}", index,
+                     cameras[index].name.empty() ? "" : fmt::format(" ({})", cameras[index].name));
+}
+
+Vec3f to_vector(const std::string& text) {
+  const auto [x, y, z] = parse_point(text);
+  return {x, y, z};
+}
+
+/// Turns `camera` so that it looks from `back` with `up` upward in its picture as far as may be.
+void turn(CameraDescription& camera, const Vec3f& back, const Vec3f& up) {
+  // About back, the x axis of this frame lies toward up.
+  const Frame frame = Frame::from_normal_tangent(back, up);
+  camera.to_world.x = -frame.y;
+  camera.to_world.y = frame.x;
+  camera.to_world.z = back;
+}
+
+void roll(CameraDescription& camera, float degrees) {
+  if (degrees == 0) return;
+  const float angle = degrees * pi / 180;
+  Transform& place = camera.to_world;
+  const Vec3f back = normalize(place.z), right = normalize(cross(place.y, back)), up = cross(back, right);
+  place.x = right * std::cos(angle) - up * std::sin(angle);
+  place.y = up * std::cos(angle) + right * std::sin(angle);
+  place.z = back;
+}
+
+/// From the scene's centre to the viewer.
+Vec3f orbit_direction(float azimuth_degrees, float elevation_degrees) {
+  const float azimuth = azimuth_degrees * pi / 180, elevation = elevation_degrees * pi / 180;
+  return {std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+          std::cos(azimuth) * std::cos(elevation)};
+}
+
+/// Straight up and down, the front of the scene stays at the bottom of the picture and at the top.
+Vec3f orbit_up(float azimuth_degrees, float elevation_degrees) {
+  return orbit_direction(azimuth_degrees, elevation_degrees + 90);
+}
+
+void look_from(CameraDescription& camera, const CameraFlags& flags, const Bounds& seen) {
+  const Vec3f from = to_vector(flags.look_from);
+  const Vec3f at = flags.look_at.empty() ? seen.center() : to_vector(flags.look_at);
+  const Vec3f up = flags.up.empty() ? Vec3f(0, 1, 0) : to_vector(flags.up);
+  if (!(length(from - at) > 0))
+    throw Error(ErrorKind::usage,
+                fmt::format("--look-from {} is the point looked at{}", flags.look_from,
+                            flags.look_at.empty() ? ", the scene's centre; --look-at gives another" : ""));
+  const Vec3f back = normalize(from - at);
+  if (!(length(cross(up, back)) > 1e-6f * length(up))) {
+    if (!flags.up.empty())
+      throw Error(ErrorKind::usage, fmt::format("--up {} lies along the view; give another", flags.up));
+    turn(camera, back, {0, 0, back.y > 0 ? -1.f : 1.f});
+  } else {
+    turn(camera, back, up);
+  }
+  camera.name = "look-from";
+  camera.to_world.origin = from;
+}
+
+float shape(const CameraDescription& camera) {
+  float aspect = camera.aspect;
+  if (camera.kind == CameraDescription::Kind::orthographic) aspect = std::abs(camera.xmag / camera.ymag);
+  return std::isfinite(aspect) && aspect > 0 ? aspect : default_aspect;
+}
+
+/// Widens, zooms and flattens a camera that stands where it shall. `seen` is what an orthographic one made
+/// of a perspective one goes on to see at the same size.
+void adjust_lens(CameraDescription& camera, const CameraFlags& flags, const Bounds& seen) {
+  using Kind = CameraDescription::Kind;
+  const float aspect = shape(camera);
+  if (flags.fov) {
+    if (camera.kind == Kind::orthographic)
+      throw Error(ErrorKind::usage,
+                  fmt::format("camera {} is orthographic and has no --fov; --zoom or --ortho HEIGHT changes "
+                              "how much it sees",
+                              camera.name));
+    camera.yfov = *flags.fov * pi / 180;
+  }
+  if (flags.ortho && camera.kind == Kind::perspective) {
+    const float distance = dot(camera.to_world.origin - seen.center(), normalize(camera.to_world.z));
+    camera.kind = Kind::orthographic;
+    camera.ymag = std::max(distance, 1e-6f) * std::tan(camera.yfov / 2);
+  }
+  if (flags.ortho_height) camera.ymag = *flags.ortho_height / 2;
+  if (flags.zoom != 1) {
+    camera.ymag /= flags.zoom;
+    camera.yfov = 2 * std::atan(std::tan(camera.yfov / 2) / flags.zoom);
+  }
+  if (flags.ortho || flags.zoom != 1) camera.xmag = camera.ymag * aspect;
+}
+
+/// Where the subject fits the picture, whatever its distance and size.
+CameraDescription fitted_camera(const CameraFlags& flags, const Subject& subject, const Bounds& seen,
+                                float aspect) {
+  CameraDescription camera;
+  camera.name = "fitted";
+  camera.yfov = flags.fov ? *flags.fov * pi / 180 : default_yfov;
+  if (flags.ortho) camera.kind = CameraDescription::Kind::orthographic;
+  const float azimuth = flags.azimuth.value_or(default_azimuth);
+  const float elevation = flags.elevation.value_or(default_elevation);
+  turn(camera, orbit_direction(azimuth, elevation), orbit_up(azimuth, elevation));
+  if (!flags.azimuth && !flags.elevation && !subject.empty())
+    if (const auto normal = subject.flat_normal(camera.to_world.z))
+      turn(camera, *normal, std::abs(normal->y) < 0.99f ? Vec3f(0, 1, 0) : Vec3f(0, 0, -normal->y));
+  roll(camera, flags.roll);
+  const FarthestPoint farthest = [&](const Vec3f& direction) {
+    if (!subject.empty()) return subject.farthest(direction);
+    return Vec3f(direction.x > 0 ? seen.upper.x : seen.lower.x, direction.y > 0 ? seen.upper.y : seen.lower.y,
+                 direction.z > 0 ? seen.upper.z : seen.lower.z);
+  };
+  return fit_camera(camera, farthest, aspect, flags.fit.empty() ? default_margin : parse_margin(flags.fit));
+}
+
+void note_fitting(const CameraFlags& flags, const Subject& subject, NoticeLog& log) {
+  if (subject.empty()) {
+    log.add({Notice::Severity::info, {}, "there is nothing to see in the scene; looking at the origin"});
+    return;
+  }
+  if (!flags.orbits() && !flags.ortho)
+    log.add({Notice::Severity::info,
+             {},
+             "the scene has no camera; using one fitted to it, --azimuth and --elevation go around it"});
+  if (subject.left_out() > 0)
+    log.add({Notice::Severity::info,
+             {},
+             fmt::format("the camera is fitted without {} far larger {}; --look-from and --look-at see more",
+                         subject.left_out(), subject.left_out() == 1 ? "object" : "objects")});
+}
+
+}  // namespace
+
+std::optional<CameraDescription> choose_camera(std::span<const CameraDescription> cameras,
+                                               const CameraFlags& flags, NoticeLog& log) {
+  const std::string& choice = flags.camera;
+  if (flags.orbits() || !flags.look_from.empty() || (choice.empty() && cameras.empty())) return {};
+  size_t chosen = 0;
+  if (choice.empty()) {
+    if (cameras.size() > 1)
+      log.add({Notice::Severity::info,
+               {},
+               fmt::format("the scene has {} cameras; using {}, --camera picks another", cameras.size(),
+                           label(cameras, 0))});
+  } else {
+    const auto named =
+        std::find_if(cameras.begin(), cameras.end(), [&](const auto& c) { return c.name == choice; });
+    chosen = named != cameras.end() ? size_t(named - cameras.begin())
+                                    : parse_index(choice).value_or(cameras.size());
+    if (chosen >= cameras.size()) {
+      std::vector<std::string> labels;
+      for (size_t i = 0; i < cameras.size(); ++i) labels.push_back(label(cameras, i));
+      throw_unknown_name("camera", choice, labels);
+    }
+  }
+  CameraDescription camera = cameras[chosen];
+  if (!camera.defect.empty()) throw Error(ErrorKind::input, camera.defect);
+  for (const CameraDescription& other : cameras)
+    if (!other.defect.empty())
+      log.add({Notice::Severity::warning, {}, fmt::format("{}; it is not the one used", other.defect)});
+  if (camera.name.empty()) camera.name = std::to_string(chosen);
+  return camera;
+}
+
+CameraDescription place_camera(const std::optional<CameraDescription>& chosen, const CameraFlags& flags,
+                               const SceneGeometry& geometry, float aspect, NoticeLog& log) {
+  const Subject subject(geometry);
+  Bounds seen = subject.bounds();
+  if (seen.empty()) {
+    seen.add(Vec3f(-1));
+    seen.add(Vec3f(1));
+  }
+  CameraDescription camera;
+  if (chosen) {
+    camera = *chosen;
+    roll(camera, flags.roll);
+  } else if (!flags.look_from.empty()) {
+    camera.yfov = default_yfov;
+    look_from(camera, flags, seen);
+    roll(camera, flags.roll);
+  } else {
+    note_fitting(flags, subject, log);
+    camera = fitted_camera(flags, subject, seen, aspect > 0 ? aspect : default_aspect);
+  }
+  adjust_lens(camera, flags, seen);
+  return camera;
+}
+
+void fill_in_size(RenderSettings& options, const CameraDescription& camera) {
+  if (options.width > 0) return;
+  const double aspect = shape(camera);
+  const double longer = std::abs(aspect - 1) < 1e-3 ? 1024 : 1280;
+  options.width = std::max(1, static_cast<int>(std::lround(aspect >= 1 ? longer : longer * aspect)));
+  options.height = std::max(1, static_cast<int>(std::lround(aspect >= 1 ? longer / aspect : longer)));
+}
+
+float asked_aspect(const std::string& size) {
+  if (size.empty()) return 0;
+  const PixelSize pixels = parse_pixel_size(size);
+  return float(pixels.width) / float(pixels.height);
+}
+
+}  // namespace vernier::apps

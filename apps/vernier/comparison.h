@@ -1,0 +1,62 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/compare/bias_test.h"
+#include "core/compare/flip.h"
+#include "core/compare/metrics.h"
+
+namespace vernier::apps {
+
+struct ComparisonOptions {
+  bool flip = true;          ///< the costliest figure
+  double bias_level = 0.01;  ///< expected part of false findings
+  int bias_block = 8;        ///< pixels a side of the squares whose means are tested
+};
+
+/// What was measured of a picture x and its reference r.
+struct Comparison {
+  int width = 0, height = 0;
+  bool linear = false;  ///< both hold linear light rather than display values
+  double peak = 1;      ///< that psnr counts from: 1 for display values, else the largest value of r
+  ImageDifference difference;
+  std::optional<FlipResult> flip;
+  std::optional<BiasTest> bias;  ///< when both files have an error layer
+  bool denoised = false;         ///< either picture: its error then includes what the filter did to it
+};
+
+/// Reads both files and measures. Throws Error(usage) when they cannot be compared.
+Comparison compare_files(const std::string& picture, const std::string& reference,
+                         const ComparisonOptions& options);
+
+/// A figure of a comparison that can be limited.
+struct Metric {
+  std::string_view name;
+  std::string_view description;
+  std::optional<double> (*value)(const Comparison&);
+};
+
+std::span<const Metric> metrics();
+
+/// A limit as typed, METRIC>NUMBER or METRIC<NUMBER, that breaks when it holds.
+class Limit {
+ public:
+  /// Throws Error(usage).
+  explicit Limit(const std::string& text);
+
+  /// What is wrong, empty when all is well. A figure that is not a number breaks it. Throws Error(usage) when
+  /// the comparison has no such figure.
+  std::string complaint(const Comparison& comparison) const;
+
+ private:
+  const Metric* metric_;
+  bool above_;
+  double bound_ = 0;
+};
+
+}  // namespace vernier::apps

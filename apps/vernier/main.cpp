@@ -1,0 +1,144 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <stdexcept>
+
+#include "apps/vernier/commands.h"
+#include "apps/vernier/messages.h"
+#include "apps/vernier/stop_signals.h"
+#include "core/base/names.h"
+#include "vernier/error.h"
+
+namespace vernier::apps {
+namespace {
+
+/// Every subcommand, in the order of `vernier --help`.
+constexpr void (*subcommands[])(Program&) = {
+    register_render, register_info, register_compare, register_denoise, register_merge, register_bench,
+};
+
+ExitCode exit_code(ErrorKind kind) {
+  switch (kind) {
+    case ErrorKind::usage:
+      return ExitCode::usage;
+    case ErrorKind::memory:
+      return ExitCode::memory;
+    case ErrorKind::input:
+    case ErrorKind::output:
+      break;
+  }
+  return ExitCode::input;
+}
+
+/// The subcommand that was being read when parsing failed, innermost.
+const CLI::App& innermost(const CLI::App& app) {
+  const CLI::App* at = &app;
+  while (!at->get_subcommands().empty()) at = at->get_subcommands().back();
+  return *at;
+}
+
+std::vector<std::string> flag_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const auto& name : option->get_lnames()) names.push_back("--" + name);
+    for (const auto& name : option->get_snames()) names.push_back("-" + name);
+  }
+  return names;
+}
+
+std::vector<std::string> subcommand_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
+/// "vernier bench rays"
+std::string full_name(const CLI::App& command) {
+  std::string name = command.get_name();
+  for (const CLI::App* up = command.get_parent(); up; up = up->get_parent())
+    name.insert(0, up->get_name() + " ");
+  return name;
+}
+
+/// What is wrong with the words that nothing on the command line takes.
+std::string describe_extras(const CLI::App& app, const std::vector<std::string>& extras) {
+  const CLI::App& command = innermost(app);
+  const std::string prefix = full_name(command);
+  for (const auto& word : extras) {
+    if (word.size() < 2 || word[0] != '-') continue;
+    const std::string flag = word.substr(0, word.find('='));
+    const auto nearest = flag.size() < 4 ? "" : nearest_name(flag, flag_names(command));
+    return fmt::format("unknown flag '{}'; {} {} --help", flag,
+                       nearest.empty() ? "see" : fmt::format("did you mean '{}'? See", nearest), prefix);
+  }
+  if (const auto names = subcommand_names(command); !names.empty())
+    return unknown_name_message("command", extras.front(), names);
+  return fmt::format("'{}' is one argument too many; see {} --help", extras.front(), prefix);
+}
+
+ExitCode parse_failed(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+    app.exit(error);  // prints the help or the version that was asked for
+    return ExitCode::done;
+  }
+  // A misspelt flag is named first: it is often why something else is missing.
+  std::vector<std::string> extras = app.remaining(true);
+  const bool flag =
+      std::any_of(extras.begin(), extras.end(), [](const auto& w) { return w.size() > 1 && w[0] == '-'; });
+  const CLI::App& command = innermost(app);
+  const bool no_command = command.get_require_subcommand_min() > 0;
+  if (flag || (!extras.empty() && (no_command || dynamic_cast<const CLI::ExtrasError*>(&error))))
+    print_error(describe_extras(app, extras));
+  else if (no_command)
+    print_error(fmt::format("missing COMMAND; see {} --help", full_name(command)));
+  else
+    print_error(error.what());
+  return ExitCode::usage;
+}
+
+ExitCode run_program(int argc, char** argv) {
+  Program program;
+  program.command_line = shell_quoted({argv, static_cast<size_t>(argc)});
+  program.app.name("vernier");
+  program.app.description("CPU renderer for glTF 2.0 scenes.");
+  program.app.footer(
+      "Exit codes: 0 done, 1 comparison failed, 2 usage, 3 bad scene or file, 4 out of memory,\n"
+      "5 stopped early (image written).");
+  program.app.set_version_flag("--version", "vernier " VERNIER_VERSION);
+  program.app.require_subcommand(1);
+  for (const auto add : subcommands) add(program);
+  try {
+    program.app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return parse_failed(program.app, error);
+  }
+  return program.run();
+}
+
+}  // namespace
+}  // namespace vernier::apps
+
+int main(int argc, char** argv) {
+  using namespace vernier;
+  using namespace vernier::apps;
+  install_cleanup_signals();
+  ExitCode code = ExitCode::done;
+  try {
+    code = run_program(argc, argv);
+  } catch (const Error& error) {
+    print_error(error.what());
+    code = exit_code(error.kind());
+  } catch (const std::bad_alloc&) {
+    print_error("out of memory");
+    code = ExitCode::memory;
+  } catch (const std::length_error&) {  // a container asked for more than can be addressed
+    print_error("out of memory");
+    code = ExitCode::memory;
+  } catch (const std::exception& error) {
+    print_error(fmt::format("unexpected: {}", error.what()));
+    code = ExitCode::input;
+  }
+  return static_cast<int>(code);
+}

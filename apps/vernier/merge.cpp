@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+
+#include "apps/vernier/commands.h"
+#include "apps/vernier/flags.h"
+#include "apps/vernier/messages.h"
+#include "apps/vernier/render_options.h"
+#include "apps/vernier/render_report.h"
+#include "core/base/parallel.h"
+#include "integrators/render/checkpoint.h"
+#include "vernier/error.h"
+
+namespace vernier::apps {
+namespace {
+
+struct MergeFlags {
+  std::vector<std::string> inputs;
+  std::string output, layers;
+  unsigned threads = 0;
+  bool quiet = false;
+};
+
+/// Renders of one picture by different seeds, put together.
+struct Merged {
+  std::optional<RenderResult> result;
+  RenderIdentity identity;  ///< without seed, build and platform
+  std::map<uint64_t, std::string> files_by_seed;
+
+  void add(const std::string& path) {
+    Checkpoint checkpoint = read_checkpoint(path);
+    const std::string seed = take(checkpoint.identity, "seed");
+    if (seed.empty()) throw Error(ErrorKind::input, path, {}, "does not say its seed");
+    take(checkpoint.identity, "build");  // machines may have their own
+    take(checkpoint.identity, "platform");
+    uint64_t number = 0;
+    std::from_chars(seed.data(), seed.data() + seed.size(), number);
+    const auto [same, is_new] = files_by_seed.emplace(number, path);
+    if (!is_new)
+      throw Error(ErrorKind::input, path, {},
+                  fmt::format("has the seed {} of {}, so both hold the same samples; render parts with "
+                              "different --seed",
+                              seed, same->second));
+    RenderResult& more = checkpoint.state->so_far;
+    if (!result) {
+      identity = std::move(checkpoint.identity);
+      result = std::move(more);
+      return;
+    }
+    require_same_render(path, checkpoint.identity, identity);
+    if (more.film.width() != result->film.width() || more.film.height() != result->film.height())
+      throw Error(ErrorKind::input, path, {}, "is damaged: its picture is not of the size that it says");
+    result->film.merge(more.film);
+    result->samples += more.samples;
+    result->seconds += more.seconds;
+    result->bad_samples += more.bad_samples;
+  }
+};
+
+Metadata merged_metadata(const Merged& merged, const std::string& command_line) {
+  Metadata metadata = result_metadata(*merged.result);
+  metadata["vernier:command"] = command_line;
+  const std::map<std::string, std::string> render(merged.identity.begin(), merged.identity.end());
+  const std::pair<const char*, const char*> names[] = {{"vernier:sceneHash", "scene"},
+                                                       {"vernier:integrator", "integrator"},
+                                                       {"vernier:accelerator", "accelerator"},
+                                                       {"vernier:size", "size"},
+                                                       {"vernier:crop", "crop"}};
+  for (const auto& [attribute, name] : names)
+    if (const auto found = render.find(name); found != render.end()) metadata[attribute] = found->second;
+  std::vector<uint64_t> seeds;
+  for (const auto& [seed, file] : merged.files_by_seed) seeds.push_back(seed);
+  metadata["vernier:seed"] = fmt::format("{}", fmt::join(seeds, " "));
+  return metadata;
+}
+
+ExitCode run_merge(const MergeFlags& flags, const std::string& command_line) {
+  if (flags.inputs.size() < 2)
+    throw Error(ErrorKind::usage, "missing CHECKPOINT: two or more are merged; see vernier merge --help");
+  if (flags.output.empty()) throw Error(ErrorKind::usage, "missing -o FILE (.exr); see vernier merge --help");
+  if (is_display_file(flags.output))
+    throw Error(ErrorKind::usage, {}, "-o", "a merged picture is scene-linear: name an .exr");
+  const std::vector<Layer> chosen = find_film_layers(flags.layers);
+  check_writable_image(flags.output);
+  const ThreadLimit threads(flags.threads);
+  Merged merged;
+  for (const auto& path : flags.inputs) merged.add(path);
+  RenderResult& result = *merged.result;
+  result.error = estimate_error(result.film);
+  const LayeredImage picture = with_film_layers(result.film, chosen);
+  write_exr(flags.output, picture.image, picture.channel_names, merged_metadata(merged, command_line));
+  if (!flags.quiet)
+    fmt::print("{}\n",
+               one_line(fmt::format("wrote {}: {}x{}, {:.4g} spp of {} renders{}", flags.output,
+                                    picture.image.width, picture.image.height, samples_per_pixel(result),
+                                    flags.inputs.size(), error_text(result.error))));
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void register_merge(Program& program) {
+  CLI::App* command =
+      program.app.add_subcommand("merge", "Put renders of one picture by several seeds together");
+  auto flags = std::make_shared<MergeFlags>();
+  command->add_option("CHECKPOINT", flags->inputs, "two or more, of 'vernier render --checkpoint'")
+      ->type_name("");
+  command->add_option("-o,--output", flags->output, "picture of all their samples, .exr")->type_name("FILE");
+  command
+      ->add_option("--aov,--layers", flags->layers,
+                   "layers beside the colour: error, samples, variance, half")
+      ->type_name("LIST");
+  add_threads_flag(*command, flags->threads);
+  command->add_flag("-q,--quiet", flags->quiet, "say nothing but errors");
+  command->footer(
+      "Example: vernier render scene.glb -o a.exr --seed 1 --time 1h --checkpoint a.ckpt   (here)\n"
+      "         vernier render scene.glb -o b.exr --seed 2 --time 1h --checkpoint b.ckpt   (there)\n"
+      "         vernier merge a.ckpt b.ckpt -o c.exr --aov error");
+  command->callback([&program, flags] {
+    program.run = [&program, flags] { return run_merge(*flags, program.command_line); };
+  });
+}
+
+}  // namespace vernier::apps

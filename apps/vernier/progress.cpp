@@ -1,0 +1,96 @@
+#include "apps/vernier/progress.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace vernier::apps {
+namespace {
+
+constexpr double seconds_between_lines = 10;
+
+/// Seconds still to go if the rest takes as long as what is done; empty when too little is done to say.
+std::optional<double> time_left(const RenderProgress& progress) {
+  if (!(progress.fraction > 0.001) || progress.seconds <= 0) return {};
+  return progress.seconds * (1 - progress.fraction) / progress.fraction;
+}
+
+/// "37.5 of 64 spp, 1.92 Msamples/s, 12.1 s left"
+std::string describe(const RenderProgress& progress, int spp) {
+  std::string text =
+      fmt::format("{:.{}f}", progress.samples_per_pixel, progress.samples_per_pixel < 10 ? 1 : 0);
+  if (spp > 0) text += fmt::format(" of {}", spp);
+  text += " spp";
+  if (progress.seconds > 0)
+    text += fmt::format(", {}samples/s", format_count(double(progress.samples) / progress.seconds));
+  if (progress.error) text += fmt::format(", error {:.3g} %", 100 * progress.error->rel_rmse);
+  if (const auto left = time_left(progress)) text += fmt::format(", {} left", format_seconds(*left));
+  return text;
+}
+
+void draw_bar(const RenderProgress& progress, int spp) {
+  const std::string text = describe(progress, spp);
+  winsize window{};
+  const int columns =
+      ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0 ? window.ws_col : 80;
+  const int width = std::clamp(columns - static_cast<int>(text.size()) - 10, 0, 40);
+  const int filled = static_cast<int>(std::lround(progress.fraction * width));
+  const std::string bar =
+      std::string(static_cast<size_t>(filled), '#') + std::string(static_cast<size_t>(width - filled), '.');
+  const std::string line = fmt::format("[{}] {:3.0f} % {}", bar, progress.fraction * 100, text);
+  // Return, the line cut to the window, erase the rest of it.
+  fmt::print(stderr, "\r{}\x1b[K", line.substr(0, static_cast<size_t>(std::max(columns - 1, 1))));
+  std::fflush(stderr);
+}
+
+void print_json(const RenderProgress& progress) {
+  nlohmann::ordered_json line = {
+      {"event", "progress"},
+      {"fraction", progress.fraction},
+      {"seconds", progress.seconds},
+      {"samples_per_pixel", progress.samples_per_pixel},
+      {"samples", progress.samples},
+      {"rays", progress.rays.camera + progress.rays.bounce + progress.rays.shadow}};
+  if (progress.error) line["rel_rmse"] = progress.error->rel_rmse;
+  if (const auto left = time_left(progress)) line["seconds_left"] = *left;
+  fmt::print(stderr, "{}\n", line.dump());
+}
+
+}  // namespace
+
+ProgressReporter::ProgressReporter(ProgressMode mode, const RenderSettings& options)
+    : mode_(mode), spp_(options.limits.spp) {
+  if (mode_ == ProgressMode::automatic)
+    mode_ = isatty(STDERR_FILENO) ? ProgressMode::bar : ProgressMode::lines;
+}
+
+void ProgressReporter::update(const RenderProgress& progress) {
+  switch (mode_) {
+    case ProgressMode::bar:
+      draw_bar(progress, spp_);
+      bar_drawn_ = true;
+      break;
+    case ProgressMode::json:
+      print_json(progress);
+      break;
+    case ProgressMode::lines:
+      if (progress.seconds - last_line_ < seconds_between_lines) break;
+      last_line_ = progress.seconds;
+      fmt::print(stderr, "rendering: {:.0f} %, {}\n", progress.fraction * 100, describe(progress, spp_));
+      break;
+    case ProgressMode::automatic:
+    case ProgressMode::none:
+      break;
+  }
+}
+
+void ProgressReporter::finish() {
+  if (bar_drawn_) fmt::print(stderr, "\n");
+  bar_drawn_ = false;
+}
+
+}  // namespace vernier::apps

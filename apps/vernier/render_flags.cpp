@@ -1,0 +1,162 @@
+#include "apps/vernier/render_flags.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <limits>
+
+#include "apps/vernier/flags.h"
+#include "core/base/quantities.h"
+#include "core/denoise/denoise.h"
+#include "integrators/render/layers.h"
+#include "scene/accel/accelerator.h"
+#include "vernier/error.h"
+
+namespace vernier::apps {
+namespace {
+
+void add_quality_flags(CLI::App& command, RenderFlags& flags) {
+  command.option_defaults()->group("Picture and effort");
+  command.add_option("--spp", flags.spp, "samples a pixel on average (64 unless --time or --error is given)")
+      ->transform(whole_number(1, 1 << 30))
+      ->type_name("N");
+  command.add_option("--time", flags.time, "stop rendering after this long: 90s, 10m, 1.5h")
+      ->check(parsed_by(parse_seconds))
+      ->type_name("TIME");
+  command
+      .add_option("--error", flags.error,
+                  "stop when the picture's relative RMSE is this and surely no tenth more: 1%, 0.01")
+      ->check(parsed_by(parse_fraction))
+      ->type_name("ERROR");
+  add_adaptive_flag(command, flags);
+  command
+      .add_option("--size,--resolution", flags.size, "of the picture (the camera's shape, 1280 pixels long)")
+      ->check(parsed_by(parse_pixel_size))
+      ->type_name("WxH");
+  command.add_option("--crop", flags.crop, "render only this part")
+      ->check(parsed_by(parse_pixel_rect))
+      ->type_name("WxH+X+Y");
+  command.add_option("--seed", flags.seed, "of the random numbers")
+      ->transform(whole_number(0, std::numeric_limits<uint64_t>::max()))
+      ->type_name("N")
+      ->capture_default_str();
+  add_threads_flag(command, flags.threads);
+}
+
+void add_integrator_flags(CLI::App& command, RenderFlags& flags) {
+  command.option_defaults()->group("Light transport");
+  IntegratorOptions& options = flags.integrator_options;
+  command.add_option("--integrator", flags.integrator, "how light is computed; 'help' lists them")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command.add_option("--show", flags.show, "raycast: what to show; 'help' lists it")->type_name("NAME");
+  add_max_depth_flag(command, flags);
+  command.add_option("--ambient", options.ambient, "whitted: radiance that reaches everything")
+      ->transform(real_number(0, 1e30))
+      ->type_name("L")
+      ->capture_default_str();
+  command.add_option("--cutoff", options.cutoff, "whitted: smallest contribution that is still traced")
+      ->transform(real_number(0, 1e30))
+      ->type_name("X")
+      ->capture_default_str();
+  command.add_option("--accelerator", flags.accelerator, "ray query structure; 'help' lists them")
+      ->type_name("NAME");
+  add_surroundings_flags(command, flags.surroundings);
+}
+
+void add_output_flags(CLI::App& command, RenderFlags& flags) {
+  command.option_defaults()->group("Output");
+  command
+      .add_option("--aov,--layers", flags.layers,
+                  "layers of the .exr beside its colour: error,albedo,...; 'help' lists them, 'all' is all")
+      ->type_name("LIST");
+  command
+      .add_option("--denoise", flags.denoise,
+                  "filter the noise out before writing; 'help' lists the filters (docs/denoise.md)")
+      ->type_name("FILTER");
+  command.add_option("--exposure", flags.display.exposure, "stops, for PNG and JPEG")
+      ->transform(real_number(-100, 100))
+      ->type_name("EV");
+  command.add_option("--view", flags.display.view, "display view for PNG and JPEG; 'help' lists them")
+      ->type_name("NAME");
+  command.add_option("--ocio", flags.display.config, "OpenColorIO config ($OCIO, else a built-in one)")
+      ->type_name("FILE");
+  command.add_option("--stats", flags.stats, "write what was measured as JSON (docs/stats.md)")
+      ->type_name("FILE");
+  command
+      .add_option("--report", flags.report, "write a page with the picture, its error and what was measured")
+      ->type_name("FILE.html");
+  command
+      .add_option("--progress", flags.progress, "bar, lines, json or none (bar on a terminal, else lines)")
+      ->type_name("KIND")
+      ->capture_default_str();
+  command.add_flag("-q,--quiet", flags.quiet, "say nothing but errors");
+  command.add_flag("-v,--verbose", flags.verbose, "say more");
+}
+
+template <typename Table>
+void print_table(const Table& table) {
+  for (const auto& entry : table) fmt::print("{:<12} {}\n", entry.name, entry.description);
+}
+
+/// The table as --aov takes it: name, channels in the file, meaning.
+void print_layers() {
+  for (const Layer& layer : layers())
+    fmt::print("{:<10} {}\n{:10} channels {}\n", layer.name, layer.description, "",
+               fmt::join(layer.channels.begin(), layer.channels.begin() + layer.channel_count(), ", "));
+}
+
+}  // namespace
+
+void add_adaptive_flag(CLI::App& command, RenderFlags& flags) {
+  command
+      .add_option("--adaptive", flags.adaptive, "spend samples where they lower the picture's error: on, off")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->type_name("on|off")
+      ->capture_default_str();
+}
+
+void add_max_depth_flag(CLI::App& command, RenderFlags& flags) {
+  command
+      .add_option("--max-depth", flags.integrator_options.max_depth,
+                  "path vertices after the camera (whitted: at most 20)")
+      ->transform(whole_number(1, 65536))
+      ->type_name("N")
+      ->capture_default_str();
+}
+
+void add_render_flags(CLI::App& command, RenderFlags& flags) {
+  command
+      .add_option("-o,--output", flags.outputs,
+                  "picture: .exr (scene-linear), .png or .jpg (for display); may be given more than once")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  add_scene_flags(command, flags.scene, flags.import);
+  add_quality_flags(command, flags);
+  add_camera_flags(command, flags.camera);
+  add_integrator_flags(command, flags);
+  add_output_flags(command, flags);
+}
+
+bool print_requested_list(const RenderFlags& flags) {
+  if (flags.integrator == "help") {
+    print_table(integrators());
+  } else if (flags.accelerator == "help") {
+    print_table(accelerators());
+  } else if (flags.show == "help") {
+    for (const auto& name : raycast_shows()) fmt::print("{}\n", name);
+  } else if (flags.denoise == "help") {
+    print_table(denoisers());
+  } else if (flags.layers == "help") {
+    print_layers();
+  } else if (flags.display.view == "help") {
+    DisplayOptions display = flags.display;
+    display.view.clear();
+    for (const auto& name : display_views(display)) fmt::print("{}\n", name);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace vernier::apps

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/vernier/camera_flags.h"
+#include "apps/vernier/commands.h"
+#include "apps/vernier/surroundings.h"
+#include "core/display/display.h"
+#include "integrators/integrator.h"
+#include "vernier/scene.h"
+
+namespace vernier::apps {
+
+/// The flags of `vernier render`, as typed.
+struct RenderFlags {
+  std::string scene;
+  ImportOptions import;
+  std::vector<std::string> outputs;
+
+  std::string integrator = "path";
+  std::string show;  ///< empty: not given
+  IntegratorOptions integrator_options;
+  std::string accelerator;
+
+  std::optional<int> spp;
+  std::string time, error, size, crop;
+  std::string adaptive = "on";
+  uint64_t seed = 0;
+  unsigned threads = 0;
+
+  CameraFlags camera;
+  SurroundingsFlags surroundings;
+
+  std::string layers;   ///< --aov; empty: none
+  std::string denoise;  ///< filter; empty: none
+  DisplayOptions display;
+  std::string progress = "auto";
+  std::string stats, report;
+  std::string checkpoint, resume;  ///< files; empty: none
+  std::string checkpoint_every = "5m";
+  bool quiet = false, verbose = false;
+};
+
+/// Declares the flags on `command`.
+void add_render_flags(CLI::App& command, RenderFlags& flags);
+
+/// Parts of them, for other commands: how samples are spread and how long paths are.
+void add_adaptive_flag(CLI::App& command, RenderFlags& flags);
+void add_max_depth_flag(CLI::App& command, RenderFlags& flags);
+
+/// Prints the list that a flag given as "help" asks for; false when none was.
+bool print_requested_list(const RenderFlags& flags);
+
+}  // namespace vernier::apps

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/vernier/render_memory.h"
+
+#include <algorithm>
+
+#include "core/denoise/denoise.h"
+#include "core/film/error_estimate.h"
+#include "integrators/render/render_state.h"
+
+namespace vernier::apps {
+namespace {
+
+constexpr size_t color = 3 * sizeof(float);  // an Image of three channels
+
+size_t while_rendering(const MemoryUse& use) {
+  const size_t planning = use.adaptive ? SamplePlan::planning_bytes_per_pixel() : 0;
+  return RenderState::bytes_per_pixel(use.adaptive) + std::max(planning, estimate_error_bytes_per_pixel());
+}
+
+size_t while_writing(const MemoryUse& use) {
+  size_t kept = Film::bytes_per_pixel() + color + size_t(use.layer_channels) * sizeof(float);
+  size_t peak = kept + (use.error_layers ? error_layers_bytes_per_pixel() : 0);
+  if (use.denoise) {
+    peak = std::max(peak, kept + denoise_bytes_per_pixel());
+    kept += 2 * color;  // the denoised picture and its error
+  }
+  // The color alone, its eight-bit values, and the encoded file, whose buffer grows by doubling.
+  if (use.display) peak = std::max(peak, kept + color + 3 * 3 * sizeof(uint8_t));
+  // The film's picture, and a map of the errors before it is made smaller.
+  if (use.report) peak = std::max(peak, kept + error_layers_bytes_per_pixel() + color + sizeof(float));
+  return peak;
+}
+
+}  // namespace
+
+size_t peak_bytes_per_pixel(const MemoryUse& use) {
+  return std::max(while_rendering(use), while_writing(use));
+}
+
+}  // namespace vernier::apps

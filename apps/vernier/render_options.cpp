@@ -1,0 +1,169 @@
+#include "apps/vernier/render_options.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+
+#include "apps/vernier/denoising.h"
+#include "apps/vernier/flags.h"
+#include "core/base/atomic_file.h"
+#include "core/base/names.h"
+#include "core/image/image_io.h"
+#include "scene/accel/accelerator.h"
+#include "vernier/error.h"
+
+namespace vernier::apps {
+namespace {
+
+/// Only OpenEXR holds more than a picture's colour. Denoising brings the layers that it uses.
+std::vector<Layer> choose_layers(const RenderFlags& flags) {
+  if (!flags.layers.empty() && std::all_of(flags.outputs.begin(), flags.outputs.end(), is_display_file))
+    throw Error(ErrorKind::usage, {}, "--aov",
+                "only an .exr can hold layers; add -o FILE.exr, which may be given beside other outputs");
+  std::string list = flags.layers;
+  if (!flags.denoise.empty()) list += (list.empty() ? "" : ",") + std::string(layers_for_denoising);
+  return find_layers(list);
+}
+
+ProgressMode parse_progress(const RenderFlags& flags) {
+  struct Entry {
+    std::string_view name;
+    ProgressMode mode;
+  };
+  constexpr Entry table[] = {{"auto", ProgressMode::automatic},
+                             {"bar", ProgressMode::bar},
+                             {"lines", ProgressMode::lines},
+                             {"json", ProgressMode::json},
+                             {"none", ProgressMode::none}};
+  const ProgressMode mode = find_by_name(table, "--progress", flags.progress).mode;
+  return flags.quiet && mode == ProgressMode::automatic ? ProgressMode::none : mode;
+}
+
+std::unique_ptr<Integrator> make_integrator(const RenderFlags& flags) {
+  const IntegratorEntry& entry = find_by_name(integrators(), "integrator", flags.integrator);
+  IntegratorOptions options = flags.integrator_options;
+  if (!flags.show.empty()) {
+    if (entry.name != "raycast") throw Error(ErrorKind::usage, "--show needs --integrator raycast");
+    std::vector<std::string> names(raycast_shows().begin(), raycast_shows().end());
+    if (std::find(names.begin(), names.end(), flags.show) == names.end())
+      throw_unknown_name("--show", flags.show, names);
+    options.show = flags.show;
+  }
+  return entry.make(options);
+}
+
+RenderSettings make_options(const RenderFlags& flags) {
+  RenderSettings options;
+  options.seed = flags.seed;
+  if (!flags.time.empty()) options.limits.seconds = parse_seconds(flags.time);
+  if (!flags.error.empty()) options.limits.error = parse_fraction(flags.error);
+  options.adaptive = flags.adaptive == "on";
+  options.limits.spp = flags.spp.value_or(flags.time.empty() && flags.error.empty() ? 64 : 0);
+  if (!flags.size.empty()) {
+    const PixelSize size = parse_pixel_size(flags.size);
+    options.width = size.width;
+    options.height = size.height;
+  }
+  if (!flags.crop.empty()) {
+    const PixelRect rect = parse_pixel_rect(flags.crop);
+    options.crop = {rect.x, rect.y, rect.width, rect.height};
+  }
+  return options;
+}
+
+bool equal_ignoring_case(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+
+/// The view is the one asked for, else the config's default, but for raycast's pictures: they are data and go
+/// to the display unchanged where the config has a raw view.
+DisplayOptions choose_display(const RenderFlags& flags) {
+  DisplayOptions display = flags.display;
+  const bool needed = !display.view.empty() || !display.config.empty() || !flags.report.empty();
+  if (!needed && std::none_of(flags.outputs.begin(), flags.outputs.end(), is_display_file)) return display;
+  const std::vector<std::string> views = display_views(display);
+  if (!display.view.empty()) {
+    display.view = find_by_prefix("view", display.view, views);
+    return display;
+  }
+  display.view = views.front();
+  if (flags.integrator == "raycast")
+    for (const auto& view : views)
+      if (equal_ignoring_case(view, "raw")) display.view = view;
+  return display;
+}
+
+/// A render may go on in the checkpoint that it came from.
+void require_separate_outputs(const RenderFlags& flags) {
+  std::vector<std::string> written = flags.outputs;
+  written.insert(written.end(), {flags.stats, flags.report, flags.checkpoint});
+  std::vector<std::string> read{flags.scene, flags.surroundings.environment, flags.display.config};
+  if (flags.resume != flags.checkpoint) read.push_back(flags.resume);
+  require_separate_files(read, written);
+}
+
+}  // namespace
+
+MemoryUse memory_use(const RenderRequest& request) {
+  const RenderFlags& flags = request.flags;
+  MemoryUse use;
+  use.adaptive = request.options.adaptive;
+  for (const Layer& layer : request.layers) {
+    use.layer_channels += layer.channel_count();
+    use.error_layers = use.error_layers || layer.need == LayerNeed::error;
+  }
+  use.denoise = request.denoiser != nullptr;
+  use.display = std::any_of(flags.outputs.begin(), flags.outputs.end(), is_display_file);
+  use.report = !flags.report.empty();
+  return use;
+}
+
+void check_picture_size(const RenderSettings& options, const MemoryUse& use) {
+  const Crop& crop = options.crop;
+  if (crop.width > 0 && (crop.width > options.width - crop.x || crop.height > options.height - crop.y))
+    throw Error(ErrorKind::usage,
+                fmt::format("--crop {}x{}+{}+{} reaches beyond the picture of {}x{}", crop.width, crop.height,
+                            crop.x, crop.y, options.width, options.height));
+  const double pixels =
+      crop.width > 0 ? double(crop.width) * crop.height : double(options.width) * options.height;
+  const double bytes = pixels * double(peak_bytes_per_pixel(use));
+  const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+  if (bytes > memory)
+    throw Error(ErrorKind::memory,
+                fmt::format("a picture of {} pixels needs {} of memory beside the scene and there are {}; "
+                            "render parts with --crop",
+                            format_count(pixels), format_bytes(bytes), format_bytes(memory)));
+}
+
+RenderRequest check_render_flags(const RenderFlags& flags) {
+  require_scene(flags.scene, "render");
+  if (flags.outputs.empty())
+    throw Error(ErrorKind::usage, "missing -o FILE (.exr, .png, .jpg); see vernier render --help");
+  RenderRequest request;
+  request.flags = flags;
+  request.integrator = make_integrator(flags);
+  if (!flags.accelerator.empty()) find_by_name(accelerators(), "accelerator", flags.accelerator);
+  request.options = make_options(flags);
+  request.progress = parse_progress(flags);
+  request.layers = choose_layers(flags);
+  if (!flags.denoise.empty()) request.denoiser = &find_denoiser(flags.denoise);
+  if (request.options.width > 0) check_picture_size(request.options, memory_use(request));
+  request.display = choose_display(flags);
+  require_separate_outputs(flags);
+  for (const auto& path : flags.outputs) check_writable_image(path);
+  for (const auto& path : {flags.stats, flags.report})
+    if (!path.empty()) check_writable(path);
+  request.surroundings = read_surroundings(flags.surroundings);
+  return request;
+}
+
+bool is_display_file(const std::string& path) {
+  return !equal_ignoring_case(std::filesystem::path(path).extension().string(), ".exr");
+}
+
+}  // namespace vernier::apps

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/vernier/render_flags.h"
+#include "apps/vernier/render_memory.h"
+#include "core/base/quantities.h"
+#include "core/denoise/denoise.h"
+#include "core/display/display.h"
+#include "integrators/integrator.h"
+#include "integrators/render/layers.h"
+#include "integrators/render/render.h"
+#include "vernier/scene.h"
+
+namespace vernier::apps {
+
+enum class ProgressMode { automatic, bar, lines, json, none };
+
+/// The flags after everything that can be checked without reading a scene has been checked.
+struct RenderRequest {
+  RenderFlags flags;
+  std::unique_ptr<Integrator> integrator;
+  RenderSettings options;  ///< width 0: not given
+  ProgressMode progress = ProgressMode::automatic;
+  std::vector<Layer> layers;
+  const Denoiser* denoiser = nullptr;  ///< null: none
+  DisplayOptions display;
+  std::optional<Surroundings> surroundings;  ///< none: left to the scene
+};
+
+/// Checks names, sizes, outputs and reads the surroundings. Throws Error.
+RenderRequest check_render_flags(const RenderFlags& flags);
+
+MemoryUse memory_use(const RenderRequest& request);
+
+/// Whether the crop lies in the picture, and what a render of it takes in memory. Throws Error(usage) or
+/// Error(memory).
+void check_picture_size(const RenderSettings& options, const MemoryUse& use);
+
+/// Whether a file is written as display values (PNG, JPEG) rather than scene-linear ones (EXR). By extension.
+bool is_display_file(const std::string& path);
+
+}  // namespace vernier::apps

@@ -1,0 +1,221 @@
+#include "apps/vernier/render_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "apps/vernier/machine.h"
+#include "apps/vernier/messages.h"
+#include "apps/vernier/missing_text.h"
+#include "core/base/quantities.h"
+
+namespace vernier::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+uint64_t total(const RayCounts& rays) { return rays.camera + rays.bounce + rays.shadow; }
+
+double rate(uint64_t count, double seconds) { return seconds > 0 ? double(count) / seconds : 0; }
+
+std::string_view name(StopReason reason) {
+  switch (reason) {
+    case StopReason::samples:
+      return "samples";
+    case StopReason::time:
+      return "time";
+    case StopReason::error:
+      return "error";
+    case StopReason::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+/// A figure that JSON can hold: null while it is not known.
+Json known(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json asked_json(const RenderSettings& options) {
+  return {{"samples_per_pixel", options.limits.spp > 0 ? Json(options.limits.spp) : Json(nullptr)},
+          {"seconds", known(options.limits.seconds)},
+          {"rel_rmse", options.limits.error > 0 ? Json(options.limits.error) : Json(nullptr)}};
+}
+
+Json picture_json(const RenderReport& report, const RenderFlags& flags, const RenderResult& result) {
+  Json picture = {{"width", report.options.width},
+                  {"height", report.options.height},
+                  {"integrator", flags.integrator},
+                  {"camera", report.camera},
+                  {"surroundings", report.surroundings.name},
+                  {"seed", flags.seed},
+                  {"max_depth", flags.integrator_options.max_depth},
+                  {"samples", result.samples},
+                  {"samples_per_pixel", samples_per_pixel(result)},
+                  {"asked", asked_json(report.options)},
+                  {"stopped_by", name(result.reason)},
+                  {"files", report.files}};
+  if (report.options.crop.width > 0) picture["crop"] = crop_text(report.options.crop);
+  return picture;
+}
+
+Json error_json(const ErrorEstimate& error) {
+  return {{"rel_rmse", known(error.rel_rmse)},
+          {"low", known(error.low)},
+          {"high", known(error.high)},
+          {"confidence", 0.95},
+          {"unreliable", error.unreliable}};
+}
+
+Json convergence_json(const RenderResult& result) {
+  Json rows = Json::array();
+  for (const auto& [seconds, spp, error] : result.convergence)
+    rows.push_back({{"seconds", seconds}, {"samples_per_pixel", spp}, {"error", error_json(error)}});
+  return rows;
+}
+
+Json rays_json(const RenderResult& result) {
+  return {{"camera", result.rays.camera},
+          {"bounce", result.rays.bounce},
+          {"shadow", result.rays.shadow},
+          {"total", total(result.rays)},
+          {"per_second", rate(total(result.rays), result.seconds)},
+          {"samples_per_second", rate(result.samples, result.seconds)}};
+}
+
+Json profile_json(const RenderReport& report) {
+  if (report.profile.empty()) return nullptr;
+  Json shares = Json::object();
+  for (const ProfilePart& part : report.profile) shares[part.name] = part.share;
+  return {{"samples", report.profile_samples}, {"shares", shares}};
+}
+
+Json bad_samples_json(const RenderResult& result) {
+  Json examples = Json::array();
+  for (const BadSample& sample : result.bad_sample_examples)
+    examples.push_back({{"x", sample.x}, {"y", sample.y}, {"half", sample.half}, {"index", sample.index}});
+  return {{"count", result.bad_samples}, {"examples", examples}};
+}
+
+/// What was asked for and not reached, if anything.
+std::string shortfall(const RenderReport& report, const RenderResult& result) {
+  if (result.reason == StopReason::interrupted) return "; interrupted";
+  const double asked = report.options.limits.error;
+  if (asked == 0) return "";
+  if (exceeds(result.missing, asked))
+    return fmt::format("; the error of {:.3g} % is not reached, for more than that is missing", 100 * asked);
+  if (result.error.rel_rmse <= asked) return "";
+  return fmt::format("; {} before the error of {:.3g} %",
+                     result.reason == StopReason::time ? "time was up" : "all samples were taken",
+                     100 * asked);
+}
+
+}  // namespace
+
+double samples_per_pixel(const RenderResult& result) {
+  return double(result.samples) / (double(result.film.width()) * result.film.height());
+}
+
+std::string error_text(const ErrorEstimate& error) {
+  if (!std::isfinite(error.rel_rmse)) return "";
+  std::string text = fmt::format(", error {:.3g} % ({:.3g} to {:.3g} %)", 100 * error.rel_rmse,
+                                 100 * error.low, 100 * error.high);
+  if (error.unreliable >= 0.001)
+    text += fmt::format(", {:.1f} % of pixels not to be trusted", 100 * error.unreliable);
+  return text;
+}
+
+std::string crop_text(const Crop& crop) {
+  return fmt::format("{}x{}+{}+{}", crop.width, crop.height, crop.x, crop.y);
+}
+
+Metadata result_metadata(const RenderResult& result) {
+  Metadata metadata = {{"Software", "vernier " VERNIER_VERSION},
+                       {"vernier:samples", fmt::format("{}", result.samples)},
+                       {"vernier:samplesPerPixel", fmt::format("{}", samples_per_pixel(result))}};
+  if (std::isfinite(result.error.rel_rmse)) {
+    metadata["vernier:relRmse"] = fmt::format("{:.6g}", result.error.rel_rmse);
+    metadata["vernier:relRmse95"] = fmt::format("{:.6g} {:.6g}", result.error.low, result.error.high);
+    metadata["vernier:unreliablePixels"] = fmt::format("{:.6g}", result.error.unreliable);
+  }
+  metadata["vernier:missingBentLight"] = fmt::format("{:.6g}", result.missing.bent.share);
+  metadata["vernier:missingBeyondDepth"] = fmt::format("{:.6g}", result.missing.depth.share);
+  return metadata;
+}
+
+Metadata image_metadata(const RenderReport& report, const RenderFlags& flags, const RenderResult& result) {
+  Metadata metadata = {
+      {"vernier:command", report.command_line},
+      {"vernier:scene", report.scene_file},
+      {"vernier:sceneHash", report.scene_hash},
+      {"vernier:camera", report.camera},
+      {"vernier:surroundings", report.surroundings.name},
+      {"vernier:integrator", flags.integrator},
+      {"vernier:accelerator", report.accelerator},
+      {"vernier:platform", platform()},
+      {"vernier:seed", fmt::format("{}", flags.seed)},
+      {"vernier:stoppedBy", std::string(name(result.reason))},
+      {"vernier:size", fmt::format("{}x{}", report.options.width, report.options.height)},
+  };
+  metadata.merge(result_metadata(result));
+  if (report.options.crop.width > 0) metadata["vernier:crop"] = crop_text(report.options.crop);
+  return metadata;
+}
+
+Json stats_json(const RenderReport& report, const RenderFlags& flags, const RenderResult& result,
+                const NoticeLog& log) {
+  return {{"vernier", VERNIER_VERSION},
+          {"command", report.command_line},
+          {"scene",
+           {{"file", report.scene_file}, {"hash", report.scene_hash}, {"counts", to_json(report.counts)}}},
+          {"picture", picture_json(report, flags, result)},
+          {"seconds",
+           {{"load", report.load_seconds},
+            {"build", report.build_seconds},
+            {"render", result.seconds},
+            {"output", report.output_seconds},
+            {"cpu", cpu_seconds()}}},
+          {"rays", rays_json(result)},
+          {"profile", profile_json(report)},
+          {"error", error_json(result.error)},
+          {"missing", missing_json(result.missing)},
+          {"convergence", convergence_json(result)},
+          {"accelerator",
+           {{"name", report.accelerator},
+            {"build_seconds", report.accelerator_stats.build_seconds},
+            {"bytes", report.accelerator_stats.bytes}}},
+          {"peak_memory_bytes", peak_memory_bytes()},
+          {"bad_samples", bad_samples_json(result)},
+          {"notices", to_json(log.notices())},
+          {"machine", {{"cpu", cpu_name()}, {"threads", report.threads}}},
+          {"built_with", build_versions()}};
+}
+
+std::string scene_lines(const RenderReport& report) {
+  const SceneCounts& counts = report.counts;
+  return fmt::format(
+             "scene: {} triangles in {} meshes, {} in {} instances; {} materials, {} textures ({}), {} "
+             "punctual lights, {} emissive triangles\n",
+             counts.triangles, counts.meshes, counts.instanced_triangles, counts.instances, counts.materials,
+             counts.textures, format_bytes(double(counts.texture_bytes)), counts.punctual_lights,
+             counts.emissive_triangles) +
+         fmt::format("accelerator: {}, {}, built in {}\n", report.accelerator,
+                     format_bytes(double(report.accelerator_stats.bytes)),
+                     format_seconds(report.accelerator_stats.build_seconds)) +
+         fmt::format("rendering {}x{} on {} threads, {} of memory in use at most so far\n",
+                     report.options.width, report.options.height, report.threads,
+                     format_bytes(double(peak_memory_bytes())));
+}
+
+std::string summary_line(const RenderReport& report, const RenderResult& result) {
+  return fmt::format("wrote {}: {}x{}, {:.4g} spp{}, load {}, build {}, render {}, {} rays/s{}",
+                     report.files.empty() ? "nothing" : fmt::format("{}", fmt::join(report.files, ", ")),
+                     result.film.width(), result.film.height(), samples_per_pixel(result),
+                     error_text(result.error) + missing_text(result.missing),
+                     format_seconds(report.load_seconds), format_seconds(report.build_seconds),
+                     format_seconds(result.seconds), format_count(rate(total(result.rays), result.seconds)),
+                     shortfall(report, result));
+}
+
+}  // namespace vernier::apps

@@ -1,0 +1,52 @@
+#include "apps/vernier/stop_signals.h"
+
+#include "core/base/atomic_file.h"
+
+namespace vernier::apps {
+namespace {
+
+std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+
+/// Ends the process by the signal that it handles, as if it had not been handled.
+void clean_up(int signal) {
+  AtomicFile::remove_unfinished();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+void request_stop(int signal) {
+  if (stop_requested.exchange(true)) clean_up(signal);
+}
+
+void install(int signal, void (*handler)(int), struct sigaction& old) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  sigaction(signal, &action, &old);
+  if (old.sa_handler == SIG_IGN) sigaction(signal, &old, nullptr);
+}
+
+}  // namespace
+
+void install_cleanup_signals() {
+  struct sigaction old {};
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) install(signal, clean_up, old);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+StopSignals::StopSignals() {
+  stop_requested = false;
+  install(SIGINT, request_stop, old_interrupt_);
+  install(SIGTERM, request_stop, old_terminate_);
+}
+
+StopSignals::~StopSignals() {
+  sigaction(SIGINT, &old_interrupt_, nullptr);
+  sigaction(SIGTERM, &old_terminate_, nullptr);
+}
+
+const std::atomic<bool>& StopSignals::stop() const { return stop_requested; }
+
+}  // namespace vernier::apps

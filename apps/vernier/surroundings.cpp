@@ -1,0 +1,119 @@
+#include "apps/vernier/surroundings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "apps/vernier/flags.h"
+#include "core/base/names.h"
+#include "core/image/image_io.h"
+#include "integrators/render/visible_light.h"
+#include "scene/camera.h"
+#include "scene/lights/built_in_environment.h"
+#include "scene/scene.h"
+#include "vernier/error.h"
+
+namespace vernier::apps {
+namespace {
+
+constexpr std::string_view nothing = "none", own = "scene", default_surroundings = "studio";
+
+std::vector<std::string> names_without_file() {
+  std::vector<std::string> names{std::string(nothing)};
+  for (const auto& built_in : built_in_environments()) names.push_back(built_in.name);
+  return names;
+}
+
+Surroundings built_in(const BuiltInEnvironment& entry, float rotation, float scale) {
+  auto environment = std::make_shared<EnvironmentDescription>();
+  environment->picture = entry.picture();
+  environment->rotation = rotation;
+  environment->scale = scale;
+  return {entry.name, std::move(environment), entry.turns_with_camera};
+}
+
+/// A word that is neither a name nor a file is more likely a misspelt name.
+std::shared_ptr<const Image> read_picture(const std::string& file) {
+  std::error_code unknown;
+  if (file.find_first_of("./") == std::string::npos && !std::filesystem::exists(file, unknown)) {
+    const auto names = names_without_file();
+    const auto nearest = nearest_name(file, names);
+    throw Error(ErrorKind::usage,
+                fmt::format("--env: '{}' is no file and none of {}{}", file, fmt::join(names, ", "),
+                            nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+  }
+  return std::make_shared<const Image>(read_image(file));
+}
+
+/// Surroundings that turn with a camera, where its look takes them.
+std::shared_ptr<const EnvironmentDescription> turned(const Surroundings& surroundings,
+                                                     const CameraDescription& view) {
+  if (!surroundings.environment || !surroundings.turns_with_camera) return surroundings.environment;
+  auto environment = std::make_shared<EnvironmentDescription>(*surroundings.environment);
+  environment->rotation = std::remainder(environment->rotation + heading(view), 2 * pi);
+  return environment;
+}
+
+}  // namespace
+
+void add_surroundings_flags(CLI::App& command, SurroundingsFlags& flags) {
+  command
+      .add_option("--env", flags.environment,
+                  "surroundings: none, studio, sky, or a latitude-longitude picture (the scene's own; the "
+                  "studio where it is dark)")
+      ->type_name("NAME|FILE");
+  command.add_option("--env-rotate", flags.rotate, "degrees counter-clockwise seen from above")
+      ->check(real_number(-1e6, 1e6))
+      ->type_name("DEG");
+  command.add_option("--env-scale", flags.scale, "multiplies its radiance")
+      ->check(real_number(0, 1e30))
+      ->type_name("S");
+}
+
+std::optional<Surroundings> read_surroundings(const SurroundingsFlags& flags) {
+  const bool changed = flags.rotate != 0 || flags.scale != 1;
+  if (changed && (flags.environment.empty() || flags.environment == nothing))
+    throw Error(ErrorKind::usage, "--env-rotate and --env-scale need --env studio, sky or FILE");
+  if (flags.environment.empty()) return std::nullopt;
+  if (flags.environment == nothing) return Surroundings{flags.environment, nullptr};
+  const float rotation = std::remainder(flags.rotate, 360.0f) * pi / 180;
+  for (const auto& entry : built_in_environments())
+    if (entry.name == flags.environment) return built_in(entry, rotation, flags.scale);
+  auto environment = std::make_shared<EnvironmentDescription>();
+  environment->picture = read_picture(flags.environment);
+  environment->rotation = rotation;
+  environment->scale = flags.scale;
+  return Surroundings{flags.environment, std::move(environment)};
+}
+
+void replace_surroundings(SceneDescription& description, const std::optional<Surroundings>& asked,
+                          NoticeLog& log) {
+  if (!asked) return;
+  if (description.environment)
+    log.add({Notice::Severity::info, "", "--env is used instead of the file's own environment"});
+  description.environment = nullptr;
+}
+
+Surroundings surround(Scene& scene, const std::optional<Surroundings>& asked, const CameraDescription& view,
+                      const RenderSettings& options, NoticeLog& log) {
+  if (asked) {
+    if (const auto environment = turned(*asked, view)) scene.surround(environment);
+    return *asked;
+  }
+  const bool lightless = scene.lights().size() == 0;
+  const Camera camera(view, options.width, options.height);
+  if (!lightless && !is_dark(visible_light(scene, camera, options.width, options.height)))
+    return {std::string(scene.has_environment() ? own : nothing), nullptr};
+  Surroundings studio =
+      built_in(find_by_name(built_in_environments(), "environment", default_surroundings), 0, 1);
+  scene.surround(turned(studio, view));
+  log.add({Notice::Severity::info,
+           {},
+           fmt::format("{}; adding a studio around it, --env none leaves it as it is",
+                       lightless ? "the scene has no light" : "the scene's own lights leave it dark")});
+  return studio;
+}
+
+}  // namespace vernier::apps

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "apps/vernier/commands.h"
+#include "apps/vernier/notice_log.h"
+#include "integrators/render/render.h"
+#include "vernier/scene.h"
+
+namespace vernier {
+
+class Camera;
+class Scene;
+
+namespace apps {
+
+/// --env, --env-rotate and --env-scale, as typed.
+struct SurroundingsFlags {
+  std::string environment;  ///< none, a built-in one, a file; empty: not given
+  float rotate = 0;         ///< degrees
+  float scale = 1;
+};
+
+/// Declares the flags on `command`.
+void add_surroundings_flags(CLI::App& command, SurroundingsFlags& flags);
+
+/// What is around a scene.
+struct Surroundings {
+  std::string name;  ///< as --env takes it, or "scene" for the scene's own
+  std::shared_ptr<const EnvironmentDescription> environment;  ///< null: nothing
+  bool turns_with_camera = false;
+};
+
+/// Those that the flags ask for; none when they leave it to the scene. Throws Error.
+std::optional<Surroundings> read_surroundings(const SurroundingsFlags& flags);
+
+/// The scene with nothing but them around it, if there are any, and a note if it had some of its own.
+void replace_surroundings(SceneDescription& description, const std::optional<Surroundings>& asked,
+                          NoticeLog& log);
+
+/// Puts around `scene`, made of such a description, what it is rendered in by that camera, and says what that
+/// is: what was asked for; else its own where it has some, or where its lights light what the camera sees
+/// (integrators/visible_light.h); else the studio, with a note. `options` has the picture's size.
+Surroundings surround(Scene& scene, const std::optional<Surroundings>& asked, const CameraDescription& view,
+                      const RenderSettings& options, NoticeLog& log);
+
+}  // namespace apps
+}  // namespace vernier

@@ -1,0 +1,216 @@
+#include "core/denoise/denoise.h"
+
+#include <array>
+#include <cmath>
+
+#include "core/base/names.h"
+#include "core/base/parallel.h"
+#include "core/compare/metrics.h"
+#include "core/denoise/convolve.h"
+#include "core/denoise/denoise_filters.h"
+#include "core/film/likely_value.h"
+#include "vernier/error.h"
+
+namespace vernier {
+namespace {
+
+constexpr Denoiser table[] = {
+    {"nlm", "non-local means: averages pixels whose surroundings look alike, given the noise", denoise_nlm},
+    {"bilateral", "averages neighbours whose colours differ no more than their noise", denoise_bilateral},
+    {"gaussian", "averages neighbours by distance, as far as the noise explains the change",
+     denoise_gaussian},
+    {"median", "median of the 5 x 5 pixels around, as far as the noise explains the change", denoise_median},
+#ifdef VERNIER_OIDN
+    {"oidn", "Open Image Denoise, a trained network; does not use the error layer", denoise_oidn, true},
+#endif
+};
+
+constexpr int block = 32;  // pixels a side: wider than any filter's window
+constexpr int pool = 15;   // pixels a side over which the noise that is left is averaged
+
+/// Two independent measurements of one picture, as likely_value wants them.
+struct Halves {
+  Image first, second;
+  Image variance;  ///< of each value of their mean
+
+  int width() const { return first.width; }
+  int height() const { return first.height; }
+  Vec3d half_mean(int x, int y, int half) const { return Vec3d(rgb_at(half == 0 ? first : second, x, y)); }
+  Vec3d pixel(int x, int y) const { return (half_mean(x, y, 0) + half_mean(x, y, 1)) / 2.0; }
+};
+
+Vec3d independent_variance(const Halves& halves, int x, int y) {
+  return Vec3d(rgb_at(halves.variance, x, y));
+}
+
+/// Finite everywhere. Where there are no error layers no variance is known, and the pixels stand for the
+/// truth.
+Halves noisy_halves(const NoisyImage& first, const NoisyImage& second) {
+  Halves halves{fill_not_finite(first.color), fill_not_finite(second.color),
+                Image(first.color.width, first.color.height, 3)};
+  for (const NoisyImage* half : {&first, &second})
+    if (half->error) {
+      const Image error = fill_not_finite(*half->error);
+      for (size_t i = 0; i < error.values.size(); ++i)
+        halves.variance.values[i] += square(error.values[i]) / 4;
+    }
+  return halves;
+}
+
+Halves filtered_halves(Image first, Image second) {
+  Halves halves{std::move(first), std::move(second), {}};
+  halves.variance = halves.first;
+  for (size_t i = 0; i < halves.variance.values.size(); ++i)
+    halves.variance.values[i] = square((halves.first.values[i] - halves.second.values[i]) / 2);
+  return halves;
+}
+
+template <typename Value>
+Image picture_of(int width, int height, const Value& value) {
+  Image image(width, height, 3);
+  parallel_for(size_t(height), [&](size_t y) {
+    for (int x = 0; x < width; ++x) {
+      const Vec3d v = value(x, int(y));
+      for (int c = 0; c < 3; ++c) image.pixel(x, int(y))[c] = float(v[c]);
+    }
+  });
+  return image;
+}
+
+/// Whether one is more than four times the other; neither is negative.
+bool far_apart(double a, double b) { return std::max(a, b) > 4 * std::min(a, b); }
+
+/// The filtered value; where its halves are far apart one has kept what a single sample brought, and it is no
+/// more than its neighbours' mean.
+Vec3d agreed_value(const Halves& filtered, int x, int y) {
+  const Vec3d first = filtered.half_mean(x, y, 0), second = filtered.half_mean(x, y, 1);
+  const Vec3d around = mean_around(filtered, x, y);
+  Vec3d value = filtered.pixel(x, y);
+  for (int c = 0; c < 3; ++c)
+    if (far_apart(first[c], second[c])) value[c] = std::min(value[c], around[c]);
+  return value;
+}
+
+/// The squares of a value's relative errors are its squared errors times this. For the truth stands what the
+/// filtered halves agree on; where the noisy value is far from that, as much of it as both noisy halves saw.
+/// (Nearer to it such weights would go with the errors that they weigh.) A light that only one half saw would
+/// count as many times itself: a sixth of the noisy value is the least.
+Image relative_weights(const Halves& noisy, const Halves& filtered) {
+  constexpr double least = 1.0 / 6;
+  const int width = noisy.width(), height = noisy.height();
+  const Image agreed = picture_of(width, height, [&](int x, int y) { return agreed_value(filtered, x, y); });
+  const auto agreed_at = [&](int x, int y) { return Vec3d(rgb_at(agreed, x, y)); };
+  return picture_of(width, height, [&](int x, int y) {
+    const Vec3d own = noisy.pixel(x, y), likely = likely_value(noisy, x, y, agreed_at);
+    Vec3d value = agreed_at(x, y);
+    for (int c = 0; c < 3; ++c)
+      if (far_apart(own[c], value[c])) value[c] = likely[c];
+    value = max(value, least * own);
+    return Vec3d(1, 1, 1) / (value * value + Vec3d(relative_error_epsilon));
+  });
+}
+
+/// Sums of the squared relative errors of the pixels of a block.
+struct BlockSums {
+  double noisy = 0, denoised = 0, pixels = 0;
+};
+
+/// Adds what one pixel says of its squared errors. What the filter has taken from one half is independent of
+/// what it has taken from the other, and the expectation of both is what it blurs: so that squared is their
+/// product. The variance that is left is that of the mean of the filtered halves.
+void add_pixel(BlockSums& sums, const Halves& noisy, const Halves& filtered, const Image& weights, int x,
+               int y) {
+  const Vec3d a = noisy.half_mean(x, y, 0), b = noisy.half_mean(x, y, 1);
+  const Vec3d fa = filtered.half_mean(x, y, 0), fb = filtered.half_mean(x, y, 1);
+  const Vec3d weight(rgb_at(weights, x, y)), apart = (a - b) / 2.0;
+  sums.noisy += dot(weight, apart * apart) / 3;
+  sums.denoised += dot(weight, (fa - a) * (fb - b) + independent_variance(filtered, x, y)) / 3;
+  ++sums.pixels;
+}
+
+std::vector<BlockSums> block_sums(const Halves& noisy, const Halves& filtered, const Image& weights) {
+  const int columns = (noisy.width() + block - 1) / block, rows = (noisy.height() + block - 1) / block;
+  std::vector<BlockSums> sums(size_t(columns) * size_t(rows));
+  for (int y = 0; y < noisy.height(); ++y)
+    for (int x = 0; x < noisy.width(); ++x)
+      add_pixel(sums[size_t(y / block) * size_t(columns) + size_t(x / block)], noisy, filtered, weights, x,
+                y);
+  return sums;
+}
+
+/// Errors of neighbouring pixels go together after filtering, so the interval is that of the blocks.
+DenoisedError estimate(const std::vector<BlockSums>& blocks) {
+  BlockSums total;
+  for (const BlockSums& sums : blocks) {
+    total.noisy += sums.noisy;
+    total.denoised += sums.denoised;
+    total.pixels += sums.pixels;
+  }
+  const double mean = total.denoised / total.pixels;
+  double spread = 0;
+  for (const BlockSums& sums : blocks) {
+    const double off = sums.denoised - mean * sums.pixels;
+    spread += off * off;
+  }
+  const double n = double(blocks.size());
+  const double error = n > 1 ? std::sqrt(spread * n / (n - 1)) / total.pixels : std::abs(mean);
+  const auto root = [](double x) { return std::sqrt(std::max(0.0, x)); };
+  return {root(total.noisy / total.pixels), root(mean), root(mean - 1.96 * error), root(mean + 1.96 * error)};
+}
+
+/// The variance that is left, averaged about each pixel as a part of what the error is relative to, lest a
+/// lamp's is its dark surroundings', times one factor for the whole picture: its squared error over that
+/// variance, which lacks what the filter has blurred.
+Image pixel_errors(const Image& variance, const Image& weights, double rel_rmse) {
+  Image left = variance;
+  double sum = 0;
+  for (size_t i = 0; i < left.values.size(); ++i) sum += left.values[i] *= weights.values[i];
+  const double total = rel_rmse * rel_rmse * double(left.values.size());
+  const double factor = sum > 0 ? std::max(1.0, total / sum) : 1;
+  const std::vector<float> mean(pool, 1.f / pool);
+  left = convolve(left, mean, mean);
+  for (size_t i = 0; i < left.values.size(); ++i)
+    left.values[i] = float(std::sqrt(factor * left.values[i] / weights.values[i]));
+  return left;
+}
+
+}  // namespace
+
+std::span<const Denoiser> denoisers() { return table; }
+
+size_t denoise_bytes_per_pixel() {
+  constexpr size_t image = 3 * sizeof(float);
+  constexpr size_t given =
+      4 + 4 + 2 * 4;  // a NoisyImage, the halves with their spreads, each half's NoisyImage
+  constexpr size_t guided = 1 + 1 + 2 + 1;     // color, variance, features and modulation of a GuidedImage
+  constexpr size_t filtering = 1 + 1 + 2 + 1;  // its color, variance and features as planes, and the result
+  constexpr size_t filtered = 1;               // the other half
+  return (given + guided + filtering + filtered) * image;
+}
+
+const Denoiser& find_denoiser(std::string_view name) {
+#ifndef VERNIER_OIDN
+  if (name == "oidn")
+    throw Error(
+        ErrorKind::usage,
+        "this build has no filter 'oidn': install Open Image Denoise (www.openimagedenoise.org) where "
+        "CMake finds it and configure again with -DVERNIER_OIDN=ON");
+#endif
+  return find_by_name(denoisers(), "filter", name);
+}
+
+DenoisedHalves denoise_halves(const Denoiser& denoiser, const NoisyImage& first, const NoisyImage& second) {
+  if (first.color.width != second.color.width || first.color.height != second.color.height)
+    throw Error(ErrorKind::usage, "the two halves of a picture to denoise differ in size");
+  const Halves filtered = filtered_halves(denoiser.filter(first), denoiser.filter(second));
+  const Halves noisy = noisy_halves(first, second);
+  const Image weights = relative_weights(noisy, filtered);
+  DenoisedHalves result;
+  result.picture =
+      picture_of(noisy.width(), noisy.height(), [&](int x, int y) { return filtered.pixel(x, y); });
+  result.error = estimate(block_sums(noisy, filtered, weights));
+  result.pixel_error = pixel_errors(filtered.variance, weights, result.error.rel_rmse);
+  return result;
+}
+
+}  // namespace vernier

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vernier/image.h"
+
+namespace vernier {
+
+/// Sums of samples per pixel, in double, kept in two halves whose samples are independent of each other:
+/// their difference measures the error of their mean. One thread at a time may add to a given pixel.
+class Film {
+ public:
+  static constexpr int halves = 2;
+
+  Film(int width, int height) : width_(width), height_(height), cells_(size_t(width) * height * halves) {}
+
+  /// A sample that is not finite or is negative in any channel is not stored; returns false for it.
+  [[nodiscard]] bool add(int x, int y, int half, const Rgb& radiance) {
+    const float smallest = std::min(radiance.x, std::min(radiance.y, radiance.z));
+    if (!(smallest >= 0) || !is_finite(radiance)) return false;
+    Cell& cell = cells_[index(x, y, half)];
+    const Vec3d value(radiance);
+    cell.sum += value;
+    cell.sum_of_squares += value * value;
+    cell.largest = std::max(cell.largest, max_component(radiance));
+    ++cell.count;
+    return true;
+  }
+
+  /// Adds the samples of another film of the same size, each half to its own. The halves stay independent
+  /// when the other film's samples are independent of these.
+  void merge(const Film& other);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  uint32_t samples(int x, int y, int half) const { return cells_[index(x, y, half)].count; }
+  uint32_t samples(int x, int y) const { return samples(x, y, 0) + samples(x, y, 1); }
+
+  /// Mean of one half's samples; zero where there are none.
+  Vec3d half_mean(int x, int y, int half) const;
+  /// Variance that the mean of one half would have if its samples were independent: an upper bound in
+  /// practice, since they are stratified. Zero with fewer than two samples.
+  Vec3d half_mean_variance(int x, int y, int half) const;
+  /// Variance of a single sample of the pixel, from the spread of the samples within each half. Zero while
+  /// neither half has two samples.
+  Vec3d sample_variance(int x, int y) const;
+
+  /// The pixel: the mean of the two halves' means, so that its weights do not depend on the samples even when
+  /// the number of samples does; of the first half alone while the second has none.
+  Vec3d pixel(int x, int y) const;
+  /// Part of the sum of all samples that the largest one makes up, in [0, 1]; the brightest channel counts.
+  double largest_share(int x, int y) const;
+
+  /// All pixels: three channels, linear Rec.709; zero where there are no samples.
+  Image image() const;
+
+  /// All that is known, to be stored and read back by the same version of the program on the same kind of
+  /// machine.
+  std::span<const std::byte> bytes() const { return std::as_bytes(std::span(cells_)); }
+  std::span<std::byte> bytes() { return std::as_writable_bytes(std::span(cells_)); }
+  static constexpr size_t bytes_per_pixel() { return halves * sizeof(Cell); }
+  /// Whether add() can have led to these sums; false only of damaged bytes.
+  bool is_plausible() const;
+
+ private:
+  struct Cell {
+    Vec3d sum{0, 0, 0};
+    Vec3d sum_of_squares{0, 0, 0};
+    uint32_t count = 0;
+    float largest = 0;
+  };
+  /// Sum of the squared distances of the samples to their mean.
+  static Vec3d spread(const Cell& cell);
+  size_t index(int x, int y, int half) const { return (size_t(y) * width_ + x) * halves + half; }
+
+  int width_, height_;
+  std::vector<Cell> cells_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,85 @@
+#include "core/film/pixel_evidence.h"
+
+#include "core/base/parallel.h"
+#include "core/compare/metrics.h"
+#include "core/film/likely_value.h"
+
+namespace vernier {
+namespace {
+
+constexpr uint32_t fewest_samples = 8;       // fewer say too little about a pixel's tail
+constexpr double heavy_share = 0.25;         // of a pixel's light in one sample
+constexpr double surprising_variance = 30;   // times what is usual around the pixel
+constexpr double common_surprise = 0.05;     // of a neighbourhood's pixels
+constexpr double least_log_variance = 1e-8;  // relative; keeps logarithms finite
+
+double log_relative_variance(const Film& film, const Image& likely, int x, int y) {
+  const Vec3d variance = independent_variance(film, x, y);
+  double sum = 0;
+  for (int c = 0; c < 3; ++c) sum += relative_squared(variance[c], likely.pixel(x, y)[c]) / 3;
+  return std::log(sum + least_log_variance);
+}
+
+/// Whether a single sample makes the pixel something else than what is usual around it.
+bool is_surprising(const Film& film, const Image& log_variance, int x, int y) {
+  if (film.samples(x, y) < fewest_samples) return true;
+  if (film.largest_share(x, y) <= heavy_share) return false;
+  const double own = *log_variance.pixel(x, y);
+  double sum = -own;
+  int neighbours = -1;
+  for_each_near(film, x, y, 2, [&](int i, int j) {
+    sum += *log_variance.pixel(i, j);
+    ++neighbours;
+  });
+  return neighbours == 0 || own - sum / neighbours > std::log(surprising_variance);
+}
+
+template <typename Body>
+void for_each_pixel(const Film& film, const Body& body) {
+  parallel_for(size_t(film.height()), [&](size_t row) {
+    for (int x = 0; x < film.width(); ++x) body(x, int(row));
+  });
+}
+
+}  // namespace
+
+Vec3d squared_half_difference(const Film& film, int x, int y) {
+  const Vec3d d = (film.half_mean(x, y, 0) - film.half_mean(x, y, 1)) / 2.0;
+  return d * d;
+}
+
+Vec3d independent_variance(const Film& film, int x, int y) {
+  return (film.half_mean_variance(x, y, 0) + film.half_mean_variance(x, y, 1)) / 4.0;
+}
+
+size_t gather_evidence_bytes_per_pixel() {
+  return (3 + 1) * sizeof(float)     // the result
+         + (1 + 1) * sizeof(float);  // log_variance and surprising
+}
+
+PixelEvidence gather_evidence(const Film& film) {
+  const int width = film.width(), height = film.height();
+  PixelEvidence evidence{Image(width, height, 3), Image(width, height, 1)};
+  Image log_variance(width, height, 1), surprising(width, height, 1);
+  for_each_pixel(film, [&](int x, int y) {
+    const Vec3d likely = likely_value(film, x, y);
+    for (int c = 0; c < 3; ++c) evidence.likely.pixel(x, y)[c] = float(likely[c]);
+    *log_variance.pixel(x, y) = float(log_relative_variance(film, evidence.likely, x, y));
+  });
+  for_each_pixel(film, [&](int x, int y) {
+    *surprising.pixel(x, y) = is_surprising(film, log_variance, x, y) ? 1.f : 0.f;
+  });
+  // Where such samples are found here and there, the other pixels may owe light to some not yet drawn.
+  for_each_pixel(film, [&](int x, int y) {
+    int found = 0, pixels = 0;
+    for_each_near(film, x, y, 3, [&](int i, int j) {
+      found += *surprising.pixel(i, j) != 0;
+      ++pixels;
+    });
+    const bool unreliable = *surprising.pixel(x, y) != 0 || found > common_surprise * pixels;
+    *evidence.unreliable.pixel(x, y) = unreliable ? 1.f : 0.f;
+  });
+  return evidence;
+}
+
+}  // namespace vernier

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vernier/math.h"
+
+namespace vernier {
+
+/// Row-major picture, top row first, `channels` interleaved values a pixel.
+template <typename T>
+struct BasicImage {
+  int width = 0, height = 0, channels = 0;
+  std::vector<T> values;
+
+  BasicImage() = default;
+  BasicImage(int w, int h, int c) : width(w), height(h), channels(c), values(size_t(w) * h * c) {}
+
+  T* pixel(int x, int y) { return &values[(size_t(y) * width + x) * channels]; }
+  const T* pixel(int x, int y) const { return &values[(size_t(y) * width + x) * channels]; }
+  bool empty() const { return values.empty(); }
+};
+
+/// Float picture; three-channel ones hold scene-linear Rec.709 unless stated.
+using Image = BasicImage<float>;
+/// Eight-bit picture as decoded from a texture file, in the file's own encoding; 1 to 4 channels.
+using Image8 = BasicImage<uint8_t>;
+
+inline Rgb rgb_at(const Image& image, int x, int y) {
+  const float* p = image.pixel(x, y);
+  return {p[0], p[1], p[2]};
+}
+
+/// sRGB transfer function to linear light, encoded value in [0,1] (IEC 61966-2-1).
+inline float srgb_to_linear(float encoded) {
+  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
+}
+/// Linear light in [0,1] to the sRGB transfer function.
+inline float linear_to_srgb(float linear) {
+  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
+}
+
+}  // namespace vernier

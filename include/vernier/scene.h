@@ -1,0 +1,118 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vernier/error.h"
+#include "vernier/image.h"
+#include "vernier/material.h"
+#include "vernier/texture.h"
+#include "vernier/transform.h"
+
+// What a scene file says, before anything is built from it: plain data, metres, radians, +y up, right-handed.
+
+namespace vernier {
+
+using Triangle = std::array<uint32_t, 3>;
+
+/// Triangles of one material. Attribute arrays are empty when absent, else as long as positions.
+struct MeshDescription {
+  std::string name;
+  std::vector<Vec3f> positions;
+  std::vector<Triangle> triangles;  ///< counter-clockwise seen from the front; every index is in range
+  std::vector<Vec3f> normals;       ///< unit; empty: flat shading
+  std::vector<Vec4f> tangents;      ///< xyz unit, w = +-1 handedness: bitangent = w cross(n, t)
+  std::array<std::vector<Vec2f>, 2> texcoords;
+  std::vector<Vec4f> colors;  ///< linear RGBA, multiplies the base colour
+};
+
+/// A mesh placed in the world. Several may share a mesh.
+struct InstanceDescription {
+  std::string name;
+  uint32_t mesh = 0;
+  uint32_t material = 0;
+  Transform to_world;
+  /// Instances of one number are parts of one object, and may enclose a volume together; none: its own.
+  std::optional<uint32_t> object{};
+};
+
+/// Looks along its local -z, +y up.
+struct CameraDescription {
+  enum class Kind { perspective, orthographic };
+  std::string name;
+  Kind kind = Kind::perspective;
+  float yfov = 0.8f;         ///< perspective: full vertical angle
+  float aspect = 0;          ///< width over height; 0: that of the image
+  float xmag = 1, ymag = 1;  ///< orthographic: half width and half height in metres
+  Transform to_world;        ///< orthonormal
+  /// Why no picture can be taken with it, as the text of an Error; empty: one can.
+  std::string defect;
+};
+
+/// KHR_lights_punctual. Position is the origin; spot and directional lights shine along local -z.
+struct PunctualLightDescription {
+  enum class Kind { point, spot, directional };
+  std::string name;
+  Kind kind = Kind::point;
+  Rgb color{1, 1, 1};
+  float intensity = 1;  ///< candela (point, spot) or lux (directional), taken as W/sr and W/m^2
+  float range = std::numeric_limits<float>::infinity();
+  float inner_cone = 0, outer_cone = 0.785398163f;  ///< half angles
+  Transform to_world;
+};
+
+/// Radiance from everywhere, as a latitude-longitude picture: u = atan2(z, x) / 2pi + 1/2, v = acos(y) / pi.
+struct EnvironmentDescription {
+  std::shared_ptr<const Image> picture;  ///< three channels
+  float rotation = 0;                    ///< radians counter-clockwise about +y, applied to the picture
+  float scale = 1;
+};
+
+/// How one glTF feature of the file is honoured.
+struct FeatureUse {
+  enum class Status { exact, approximated, ignored };
+  std::string name;  ///< extension or property
+  Status status = Status::exact;
+  std::string note;  ///< how approximated, why ignored; with the clause of the specification where it helps
+};
+
+struct SceneDescription {
+  std::string source;  ///< file it came from
+  std::string hash;    ///< of every byte read: scene file, buffers, images
+  std::vector<MeshDescription> meshes;
+  std::vector<MaterialDescription> materials;
+  std::vector<Texture> textures;
+  std::vector<InstanceDescription> instances;
+  std::vector<CameraDescription> cameras;
+  std::vector<PunctualLightDescription> lights;
+  std::shared_ptr<const EnvironmentDescription> environment;  ///< null: none
+  std::vector<FeatureUse> features;
+  std::vector<Notice> notices;
+};
+
+/// How a file becomes a description.
+struct ImportOptions {
+  bool strict = false;  ///< anything not honoured exactly is an error
+  std::string variant;  ///< of KHR_materials_variants, by name; empty: the materials the file has without
+  /// Seconds at which an animation poses the scene. None: the scene is at rest, unless `animation` is named,
+  /// which then poses it at 0.
+  std::optional<double> time;
+  /// Name, index, or "all" of them at once; empty: all when no two set the same thing, else the first.
+  std::string animation;
+  /// Files that the scene refers to may lie outside its folder; such a reference is an error otherwise.
+  bool allow_outside_files = false;
+};
+
+/// Reads a .gltf or .glb file with all it refers to. Throws Error(input) with the file and JSON pointer, and
+/// Error(usage) on a variant or an animation that the file has not.
+VERNIER_API SceneDescription import_scene(const std::string& path, const ImportOptions& options = {});
+
+/// Throws Error(input) for the first warning about the scene file: what `strict` means to notices that come
+/// up only when the scene is built.
+VERNIER_API void refuse_warnings(const std::string& path, std::span<const Notice> notices);
+
+}  // namespace vernier

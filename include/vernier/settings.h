@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+
+#include "vernier/scene.h"
+
+namespace vernier {
+
+/// Which technique finds light: both weighted against each other, or one alone, for study and for tests.
+enum class LightSampling { mis, light, bsdf };
+
+/// What can be said of any integrator; each reads what it knows.
+struct IntegratorOptions {
+  int max_depth = 16;                                 ///< path vertices after the camera
+  LightSampling light_sampling = LightSampling::mis;  ///< path
+  bool russian_roulette = true;                       ///< path
+  std::string show = "normal";                        ///< raycast: what to show
+  float ambient = 0.05f;                              ///< whitted: constant ambient radiance
+  float cutoff = 1e-3f;  ///< whitted: a recursive ray that would contribute less than this is not traced
+};
+
+/// Pixels [x, x + width) x [y, y + height) of the full picture.
+struct Crop {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// When to stop: at whichever comes first. They count from the beginning of a render, however often it was
+/// interrupted.
+struct RenderLimits {
+  int spp = 64;                                              ///< samples a pixel on average; 0: no limit
+  double seconds = std::numeric_limits<double>::infinity();  ///< of rendering
+  /// Relative RMSE of the picture (ErrorEstimate), once the end of its interval is at most a tenth above;
+  /// 0: none.
+  double error = 0;
+};
+
+/// All that a picture depends on beside its scene, and when to stop.
+struct VERNIER_API RenderSettings {
+  int width = 0, height = 0;  ///< of the full picture, pixels
+  Crop crop;                  ///< what is rendered; zero width: everything
+  CameraDescription camera;
+  std::string integrator = "path";
+  IntegratorOptions integrator_options;
+  bool adaptive = true;  ///< spend samples where they lower the picture's error
+  uint64_t seed = 0;
+  RenderLimits limits;
+
+  /// As JSON, and back. Throws Error(input) on what is no settings of this version.
+  std::string to_json() const;
+  static RenderSettings from_json(std::string_view text);
+};
+
+}  // namespace vernier

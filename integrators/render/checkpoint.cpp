@@ -1,0 +1,301 @@
+#include "integrators/render/checkpoint.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/base/atomic_file.h"
+#include "core/base/fingerprint.h"
+#include "vernier/error.h"
+
+namespace vernier {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+static_assert(std::endian::native == std::endian::little, "checkpoints are little-endian");
+static_assert(sizeof(RenderResult::Look) == 6 * sizeof(double));
+static_assert(sizeof(TileLight) == 10 * sizeof(float));
+
+constexpr uint32_t format = 2;
+constexpr size_t fingerprint_length = 32;
+constexpr uint32_t longest_header = 1 << 20;
+
+/// How a file begins.
+struct Preamble {
+  std::array<char, 8> magic{'V', 'E', 'R', 'N', 'C', 'K', 'P', 'T'};
+  uint32_t format = vernier::format;
+  uint32_t header_length = 0;
+  std::array<char, fingerprint_length> header_fingerprint{};  ///< hexadecimal, of the header
+};
+static_assert(sizeof(Preamble) == 16 + fingerprint_length);
+
+/// Constant bytes of constant values.
+template <typename Values>
+auto bytes_of(Values& values) {
+  const std::span span(values);
+  if constexpr (std::is_const_v<typename decltype(span)::element_type>)
+    return std::as_bytes(span);
+  else
+    return std::as_writable_bytes(span);
+}
+
+/// Calls visit(name, bytes) for each array of a state, in the file's order.
+template <typename State, typename Plan, typename Visit>
+void for_each_array(State& state, Plan& plan_counts, const Visit& visit) {
+  visit("film", state.so_far.film.bytes());
+  visit("guide 1", state.guides[0].bytes());
+  visit("guide 2", state.guides[1].bytes());
+  visit("extra", bytes_of(state.drawn.extra));
+  visit("light", bytes_of(state.light));
+  visit("plan", bytes_of(plan_counts));
+  visit("parts", bytes_of(state.parts));
+  visit("looks", bytes_of(state.so_far.convergence));
+  visit("bad samples", bytes_of(state.so_far.bad_sample_examples));
+}
+
+Json header_of(const RenderIdentity& identity, const RenderState& state) {
+  const RenderResult& so_far = state.so_far;
+  const SamplePlan::Numbers& pass = state.pass.numbers();
+  Json header{{"render", Json::array()},
+              {"width", so_far.film.width()},
+              {"height", so_far.film.height()},
+              {"adaptive", !state.guides[0].bytes().empty()},
+              {"done", state.done},
+              {"guiding", state.drawn.guiding},
+              {"looked_at", state.looked_at},
+              {"pass", {{"size", pass.size}, {"odd_half", pass.odd_half}, {"guiding", pass.guiding}}},
+              {"seconds", so_far.seconds},
+              {"samples", so_far.samples},
+              {"rays", {so_far.rays.camera, so_far.rays.bounce, so_far.rays.shadow}},
+              {"bad_samples", so_far.bad_samples},
+              {"arrays", Json::array()}};
+  for (const auto& [name, value] : identity) header["render"].push_back(Json::array({name, value}));
+  return header;
+}
+
+/// Reads a file from its beginning to its end.
+class Reader {
+ public:
+  explicit Reader(const std::string& path) : path_(path) {
+    std::error_code error;
+    // Opening a pipe would wait for its writer.
+    if (std::filesystem::is_other(path, error)) refuse("is not a regular file");
+    file_.reset(std::fopen(path.c_str(), "rb"));
+    if (file_) left_ = std::filesystem::file_size(path, error);
+    if (!file_ || error)
+      throw Error(ErrorKind::input, path, {},
+                  fmt::format("cannot be read: {}", error ? error.message() : std::strerror(errno)));
+  }
+
+  uintmax_t left() const { return left_; }
+  void read(std::span<std::byte> bytes) {
+    if (bytes.empty()) return;  // an empty array need not be anywhere, and fread wants a place
+    if (bytes.size() > left_ || std::fread(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size())
+      damaged("it is cut short");
+    left_ -= bytes.size();
+  }
+  [[noreturn]] void damaged(const std::string& how) const {
+    // What the file holds is quoted in `how` and may be long.
+    throw Error(ErrorKind::input, path_, {},
+                fmt::format("is damaged: {:.200}; use another checkpoint or render without --resume", how));
+  }
+  [[noreturn]] void refuse(const std::string& reason) const {
+    throw Error(ErrorKind::input, path_, {}, reason);
+  }
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::string path_;
+  std::unique_ptr<std::FILE, Close> file_;
+  uintmax_t left_ = 0;
+};
+
+Json read_header(Reader& reader) {
+  Preamble preamble;
+  if (reader.left() < sizeof(preamble)) reader.refuse("is not a checkpoint of 'vernier render'");
+  reader.read(std::as_writable_bytes(std::span(&preamble, 1)));
+  if (preamble.magic != Preamble().magic) reader.refuse("is not a checkpoint of 'vernier render'");
+  if (preamble.format != format)
+    reader.refuse(
+        fmt::format("is a checkpoint of format {}; this version reads format {}", preamble.format, format));
+  if (preamble.header_length > longest_header) reader.damaged("its header is too long");
+  std::string text(preamble.header_length, ' ');
+  reader.read(std::as_writable_bytes(std::span(text)));
+  if (fingerprint(std::as_bytes(std::span(text))) !=
+      std::string_view(preamble.header_fingerprint.data(), fingerprint_length))
+    reader.damaged("its header has changed");
+  return Json::parse(text);
+}
+
+// Fingerprints tell damage, not malice: everything read below is checked before it is used or memory is taken
+// for it.
+
+/// A number of the header, at most `most`.
+uint64_t whole_number(const Reader& reader, const Json& value, const char* name,
+                      uint64_t most = std::numeric_limits<int64_t>::max()) {
+  if (!value.is_number_unsigned() || value.get<uint64_t>() > most)
+    reader.damaged(fmt::format("'{}' is not a whole number from 0 to {}", name, most));
+  return value.get<uint64_t>();
+}
+
+/// The state with its numbers, and its arrays still to be read into; `counts` are the plan's. Arrays have the
+/// sizes that follow from the numbers, the file says the same, and it is as long as all of them.
+std::shared_ptr<RenderState> allocate_state(const Reader& reader, const Json& header,
+                                            SamplePlan::Numbers& pass) {
+  constexpr uint64_t longest_side = 1 << 16;
+  const size_t width = whole_number(reader, header.at("width"), "width", longest_side);
+  const size_t height = whole_number(reader, header.at("height"), "height", longest_side);
+  if (width == 0 || height == 0) reader.damaged("its picture has no pixels");
+  const bool adaptive = header.at("adaptive").get<bool>();
+  const Json& pass_header = header.at("pass");
+  const uint32_t done = uint32_t(whole_number(reader, header.at("done"), "done", RenderState::most_samples));
+  pass.width = int(width);
+  // No pass more than doubles what is done.
+  pass.size = uint32_t(whole_number(reader, pass_header.at("size"), "size", std::max(2u, done)));
+  pass.odd_half = int(whole_number(reader, pass_header.at("odd_half"), "odd_half", Film::halves - 1));
+  pass.guiding = uint32_t(whole_number(reader, pass_header.at("guiding"), "guiding", pass.size));
+
+  const Json& arrays = header.at("arrays");
+  const auto bytes = [&](size_t array) {
+    return whole_number(reader, arrays.at(array).at("bytes"), "bytes");
+  };
+  const size_t pixels = width * height;
+  const size_t tiles = RenderState::tile_count(int(width), int(height));
+  const bool uneven = pass.size > 0 && bytes(5) > 0;
+  const std::array<size_t, 9> expected{pixels * Film::bytes_per_pixel(),
+                                       adaptive ? pixels * SampleGuide::bytes_per_pixel() : 0,
+                                       adaptive ? pixels * SampleGuide::bytes_per_pixel() : 0,
+                                       adaptive ? pixels * Film::halves * sizeof(uint32_t) : 0,
+                                       tiles * sizeof(TileLight),
+                                       uneven ? pixels * Film::halves * sizeof(uint16_t) : 0,
+                                       pass.size > 0 ? tiles * sizeof(uint32_t) : 0,
+                                       bytes(7) / sizeof(RenderResult::Look) * sizeof(RenderResult::Look),
+                                       bytes(8) / sizeof(BadSample) * sizeof(BadSample)};
+  uintmax_t total = 0;
+  for (size_t i = 0; i < expected.size(); ++i) {
+    if (bytes(i) != expected[i])
+      reader.damaged(fmt::format("array {} has {} bytes, expected {}", i, bytes(i), expected[i]));
+    if (expected[i] > reader.left() - total) reader.damaged("it is cut short");
+    total += expected[i];
+  }
+  if (arrays.size() != expected.size() || total != reader.left())
+    reader.damaged(fmt::format("{} bytes follow its header, expected {}", reader.left(), total));
+
+  auto state = std::make_shared<RenderState>(int(width), int(height), adaptive);
+  state->done = done;
+  for (size_t half = 0; half < Film::halves; ++half)
+    state->drawn.guiding[half] =
+        uint32_t(whole_number(reader, header.at("guiding").at(half), "guiding", RenderState::most_samples));
+  state->looked_at = uint32_t(whole_number(reader, header.at("looked_at"), "looked_at", done));
+  if (uneven) pass.counts.resize(pixels * Film::halves);
+  if (pass.size > 0) state->parts.resize(tiles);
+  state->so_far.convergence.resize(bytes(7) / sizeof(RenderResult::Look));
+  state->so_far.bad_sample_examples.resize(bytes(8) / sizeof(BadSample));
+  return state;
+}
+
+/// Totals of the header.
+void read_totals(const Reader& reader, const Json& header, RenderResult& so_far) {
+  so_far.samples = whole_number(reader, header.at("samples"), "samples");
+  so_far.bad_samples = whole_number(reader, header.at("bad_samples"), "bad_samples", so_far.samples);
+  const Json& rays = header.at("rays");
+  const auto count = [&](size_t i) { return whole_number(reader, rays.at(i), "rays"); };
+  so_far.rays = {count(0), count(1), count(2)};
+  const Json& seconds = header.at("seconds");
+  constexpr double longest = 1e10;  // three centuries
+  if (!seconds.is_number() || !(seconds.get<double>() >= 0 && seconds.get<double>() <= longest))
+    reader.damaged("'seconds' is not a duration");
+  so_far.seconds = seconds;
+}
+
+void read_state(Reader& reader, const Json& header, Checkpoint& checkpoint) {
+  for (const Json& pair : header.at("render"))
+    checkpoint.identity.emplace_back(pair.at(0).get<std::string>(), pair.at(1).get<std::string>());
+  SamplePlan::Numbers pass;
+  checkpoint.state = allocate_state(reader, header, pass);
+  RenderState& state = *checkpoint.state;
+  read_totals(reader, header, state.so_far);
+  const Json& arrays = header.at("arrays");
+  size_t i = 0;
+  for_each_array(state, pass.counts, [&](const char* name, std::span<std::byte> array) {
+    const Json& described = arrays.at(i++);
+    if (described.at("name") != name) reader.damaged(fmt::format("it has no '{}' in its place", name));
+    reader.read(array);
+    if (described.at("fingerprint") != fingerprint(array))
+      reader.damaged(fmt::format("its '{}' has changed", name));
+  });
+  state.pass = SamplePlan(std::move(pass));
+  if (const char* part = implausible_part(state))
+    reader.damaged(fmt::format("its '{}' holds values that no render has", part));
+}
+
+}  // namespace
+
+void write_checkpoint(const std::string& path, const RenderIdentity& identity, const RenderState& state) {
+  Json header = header_of(identity, state);
+  std::vector<std::span<const std::byte>> parts(2);
+  for_each_array(state, state.pass.numbers().counts, [&](const char* name, std::span<const std::byte> array) {
+    header["arrays"].push_back(
+        {{"name", name}, {"bytes", array.size()}, {"fingerprint", fingerprint(array)}});
+    parts.push_back(array);
+  });
+  const std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
+  Preamble preamble;
+  preamble.header_length = uint32_t(text.size());
+  fingerprint(std::as_bytes(std::span(text))).copy(preamble.header_fingerprint.data(), fingerprint_length);
+  parts[0] = std::as_bytes(std::span(&preamble, 1));
+  parts[1] = std::as_bytes(std::span(text));
+  write_file(path, parts);
+}
+
+Checkpoint read_checkpoint(const std::string& path) {
+  Reader reader(path);
+  Checkpoint checkpoint;
+  try {
+    read_state(reader, read_header(reader), checkpoint);
+  } catch (const Json::exception& error) {
+    reader.damaged(error.what());
+  }
+  return checkpoint;
+}
+
+std::string take(RenderIdentity& identity, const std::string& name) {
+  const auto found =
+      std::find_if(identity.begin(), identity.end(), [&](const auto& pair) { return pair.first == name; });
+  if (found == identity.end()) return {};
+  std::string value = std::move(found->second);
+  identity.erase(found);
+  return value;
+}
+
+void require_same_render(const std::string& path, const RenderIdentity& checkpoint,
+                         const RenderIdentity& wanted) {
+  const auto value = [](const RenderIdentity& identity, const std::string& name) {
+    const auto found =
+        std::find_if(identity.begin(), identity.end(), [&](const auto& pair) { return pair.first == name; });
+    return found == identity.end() ? std::string("none") : found->second;
+  };
+  RenderIdentity all = wanted;
+  for (const auto& pair : checkpoint)
+    if (value(wanted, pair.first) == "none") all.push_back(pair);
+  std::string differences;
+  for (const auto& [name, any] : all)
+    if (value(checkpoint, name) != value(wanted, name))
+      differences += fmt::format("{}{:.100} was {:.100}, is {:.100}", differences.empty() ? "" : "; ", name,
+                                 value(checkpoint, name), value(wanted, name));
+  if (!differences.empty())
+    throw Error(ErrorKind::input, path, {}, fmt::format("is of another render: {}", differences));
+}
+
+}  // namespace vernier

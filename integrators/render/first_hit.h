@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/film/film.h"
+#include "integrators/render/render.h"
+
+namespace vernier {
+
+/// What the camera meets first, as the mean over a pixel's samples. Samples that meet nothing count as zero.
+struct FirstHitMean {
+  Rgb albedo{0, 0, 0};    ///< fraction of light scattered toward the camera
+  Vec3f normal{0, 0, 0};  ///< of unit shading normals on the camera's side; shorter where they differ
+  float coverage = 0;     ///< part of the samples that meet something
+};
+
+/// What the ray through a pixel's centre meets first.
+struct FirstHit {
+  float depth = 0;    ///< metres along the camera's axis
+  Vec3f position;     ///< world
+  uint32_t instance;  ///< number in the scene
+};
+
+/// Looks at a picture's first hits again after it has been rendered, so that rendering never pays for them.
+class FirstHits {
+ public:
+  /// `options` are those that `film` was rendered with. The arguments must live as long.
+  FirstHits(const Scene& scene, const Camera& camera, const RenderSettings& options, const Film& film);
+
+  /// Over the pixel's own camera samples, of each half at most the first eight, so that noise of edges is
+  /// that of the picture. x and y are in the film.
+  FirstHitMean mean(int x, int y) const;
+  std::optional<FirstHit> at_center(int x, int y) const;
+
+ private:
+  const Scene& scene_;
+  const Camera& camera_;
+  const RenderSettings& options_;
+  const Film& film_;
+  Vec3f axis_;  ///< unit, the way the camera looks
+};
+
+}  // namespace vernier

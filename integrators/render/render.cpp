@@ -1,0 +1,290 @@
+#include "integrators/render/render.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <mutex>
+
+#include "integrators/render/camera_sample.h"
+#include "integrators/render/observer_thread.h"
+#include "integrators/render/render_state.h"
+#include "scene/scene.h"
+
+namespace vernier {
+namespace {
+
+constexpr int tile_size = RenderState::tile_size;
+constexpr size_t kept_bad_samples = 8;
+
+/// How many times the error asked for there is: by the figure itself, and by the end of its interval, which
+/// may be a tenth larger. At 1 the picture is good enough, and with 97.5 % confidence not much worse than
+/// asked.
+double excess(const ErrorEstimate& error, double asked) {
+  return std::max(error.rel_rmse, error.high / 1.1) / asked;
+}
+
+/// Of the pass after `done` samples a pixel. Passes double at first, so that a picture comes soon and
+/// stratified sets of samples are completed; later ones are short enough to look often at clock and target,
+/// long enough that planning them costs nothing.
+uint32_t pass_size(uint32_t done) { return std::clamp(done, 2u, std::clamp(done / 4, pilot, 1u << 14)); }
+
+/// Keeps those that come first in the picture, whatever the order in which they are found.
+void keep_few(std::vector<BadSample>& examples) {
+  std::sort(examples.begin(), examples.end());
+  if (examples.size() > kept_bad_samples) examples.resize(kept_bad_samples);
+}
+
+/// One render call. Tiles write disjoint pixels of the film; totals are merged once a tile.
+class Renderer {
+ public:
+  Renderer(const Scene& scene, const Camera& camera, const Integrator& integrator,
+           const RenderSettings& options, const std::atomic<bool>& stop, RenderHooks hooks)
+      : scene_(scene),
+        camera_(camera),
+        integrator_(integrator),
+        options_(options),
+        crop_(options.crop.width > 0 ? options.crop : Crop{0, 0, options.width, options.height}),
+        stop_(stop),
+        hooks_(std::move(hooks)),
+        state_(hooks_.from ? std::move(*hooks_.from)
+                           : RenderState(crop_.width, crop_.height, options.adaptive)),
+        seconds_before_(state_.so_far.seconds) {}
+
+  RenderResult run() {
+    next_save_ = seconds() + hooks_.save_interval;
+    if (state_.so_far.samples > 0) look();
+    while (!reason_) {
+      if (state_.pass.size() == 0) plan_pass();
+      render_pass();
+      if (is_pass_complete()) end_pass();
+      look();
+    }
+    if (hooks_.save) save();
+    return finish();
+  }
+
+ private:
+  /// What one tile adds to the totals.
+  struct Totals {
+    uint64_t samples = 0;
+    RayCounts rays;
+    TileLight light;
+    uint64_t bad_samples = 0;
+    std::vector<BadSample> bad_sample_examples;
+  };
+
+  RenderResult& result() { return state_.so_far; }
+  const RenderResult& result() const { return state_.so_far; }
+  double samples_per_pixel() const { return double(result().samples) / (double(crop_.width) * crop_.height); }
+  double seconds() const {
+    const std::chrono::duration<double> running = std::chrono::steady_clock::now() - start_;
+    return seconds_before_ + running.count() - saving_;
+  }
+  bool out_of_time() const { return seconds() >= options_.limits.seconds; }
+
+  /// Without regard to --spp, which may end the render in the midst of a pass.
+  void plan_pass() {
+    const uint32_t size = pass_size(state_.done);
+    const bool may_adapt = options_.adaptive && state_.done >= pilot;
+    state_.pass = may_adapt ? SamplePlan::adaptive(state_.drawn, state_.guides, size)
+                            : SamplePlan::uniform(state_.drawn, size);
+    state_.parts.assign(size_t(state_.tile_count()), 0);
+  }
+
+  /// How much of the pass is wanted, in samples a pixel.
+  uint32_t wanted_part() const {
+    if (options_.limits.spp <= 0) return state_.pass.size();
+    return std::min(state_.pass.size(), uint32_t(std::max(0, options_.limits.spp - int(state_.done))));
+  }
+  bool is_pass_complete() const {
+    return std::all_of(state_.parts.begin(), state_.parts.end(),
+                       [this](uint32_t part) { return part == state_.pass.size(); });
+  }
+  void end_pass() {
+    state_.done += state_.pass.size();
+    for (int half = 0; half < Film::halves; ++half)
+      state_.drawn.guiding[size_t(half)] += state_.pass.guiding_count(half);
+    state_.pass = {};
+    state_.parts.clear();
+  }
+  bool has_all_samples() const {
+    if (options_.limits.spp <= 0) return false;
+    return std::all_of(state_.parts.begin(), state_.parts.end(),
+                       [wanted = wanted_part()](uint32_t part) { return part >= wanted; }) &&
+           state_.done + wanted_part() >= uint32_t(options_.limits.spp);
+  }
+
+  /// Is it enough? The error counts between passes only, for a render that was cut must not end elsewhere.
+  void look() {
+    if (has_all_samples()) {
+      reason_ = StopReason::samples;
+    } else if (stop_) {
+      reason_ = StopReason::interrupted;
+    } else if (out_of_time()) {
+      reason_ = StopReason::time;
+    }
+    const bool has_target = options_.limits.error > 0;
+    // The estimate costs as much as a few samples; without a target, looking when samples have grown by a
+    // half is often enough.
+    const bool due = has_target || 2 * state_.done >= 3 * state_.looked_at;
+    if (state_.pass.size() == 0 && state_.done >= pilot && state_.done > state_.looked_at && due) {
+      state_.looked_at = state_.done;
+      result().convergence.push_back({seconds(), samples_per_pixel(), estimate_error(result().film)});
+    }
+    if (!reason_ && has_target && !result().convergence.empty() &&
+        excess(result().convergence.back().error, options_.limits.error) <= 1)
+      reason_ = StopReason::error;
+  }
+
+  RenderResult finish() {
+    result().reason = *reason_;
+    const auto& looks = result().convergence;
+    const bool looked = !looks.empty() && looks.back().samples_per_pixel == samples_per_pixel();
+    result().error = looked ? looks.back().error : estimate_error(result().film);
+    if (!looked && state_.done >= pilot)
+      result().convergence.push_back({seconds(), samples_per_pixel(), result().error});
+    result().missing = estimate_missing(state_.light);
+    result().seconds = seconds();
+    return std::move(result());
+  }
+
+  /// As far as limits allow.
+  void render_pass() {
+    const uint32_t wanted = wanted_part();
+    do {
+      if (is_save_due()) save();
+      tbb::parallel_for(0, state_.tile_count(), [&](int tile) {
+        // Every pixel gets its first samples unless interrupted.
+        if (stop_ || (state_.done > 0 && out_of_time()) || is_save_due()) return;
+        uint32_t& part = state_.parts[size_t(tile)];
+        if (part < wanted) render_tile(tile, part, wanted);
+        part = std::max(part, wanted);
+      });
+    } while (is_save_due() && !stop_);
+  }
+
+  /// From `part` of the pass to `wanted`.
+  void render_tile(int tile, uint32_t part, uint32_t wanted) {
+    Totals totals;
+    const int columns = state_.tile_columns();
+    const int x0 = tile % columns * tile_size, y0 = tile / columns * tile_size;
+    for (int y = y0; y < std::min(y0 + tile_size, crop_.height); ++y)
+      for (int x = x0; x < std::min(x0 + tile_size, crop_.width); ++x)
+        for (int half = 0; half < Film::halves; ++half) {
+          const uint32_t end = state_.pass.count(x, y, half, wanted);
+          for (uint32_t i = state_.pass.count(x, y, half, part); i < end; ++i)
+            render_sample({x, y, half, i}, totals);
+        }
+    state_.light[size_t(tile)] += totals.light;
+    merge(totals);
+  }
+
+  /// Not before something has been done since the last one.
+  bool is_save_due() const { return unsaved_ && hooks_.save && seconds() >= next_save_; }
+
+  /// The clock stands still meanwhile.
+  void save() {
+    const double start = seconds();
+    result().seconds = start;
+    hooks_.save(state_);
+    unsaved_ = false;
+    const double duration = seconds() - start;
+    saving_ += duration;
+    next_save_ = start + (hooks_.save_interval > 0 ? std::max(hooks_.save_interval, 20 * duration) : 0);
+  }
+
+  /// A sample of the pass under way, by its place in the crop and its number in the plan.
+  struct Planned {
+    int x, y, half;
+    uint32_t number;
+  };
+
+  void render_sample(const Planned& planned, Totals& totals) {
+    const auto [x, y, half, number] = planned;
+    const bool guides = number < state_.pass.guiding_count(half);
+    const uint32_t index = draw_index(planned, guides);
+    const int full_x = crop_.x + x, full_y = crop_.y + y;
+    CameraSample sample = camera_sample(camera_, options_.width, full_x, full_y, half, index, options_.seed);
+    const Estimate estimate = integrator_.estimate(scene_, sample.ray, sample.sampler);
+    ++totals.samples;
+    totals.rays += estimate.rays;
+    if (!result().film.add(x, y, half, estimate.radiance)) {
+      ++totals.bad_samples;
+      if (totals.bad_sample_examples.size() >= 8 * kept_bad_samples) keep_few(totals.bad_sample_examples);
+      totals.bad_sample_examples.push_back({full_x, full_y, half, index});
+    } else if (guides) {
+      totals.light.add(estimate);
+      if (options_.adaptive) state_.guides[size_t(half)].add(x, y, estimate.radiance);
+    }
+  }
+
+  /// Index of the next sample of its kind, which goes on even where the film rejects one.
+  uint32_t draw_index(const Planned& planned, bool guides) {
+    const auto [x, y, half, number] = planned;
+    if (guides) {
+      const uint32_t n = state_.drawn.guiding[size_t(half)] + number;
+      return options_.adaptive ? guiding_index(n) : n;
+    }
+    return extra_index(state_.drawn.extra[(size_t(y) * crop_.width + x) * Film::halves + size_t(half)]++);
+  }
+
+  void merge(const Totals& totals) {
+    const std::lock_guard lock(mutex_);
+    unsaved_ = true;
+    result().samples += totals.samples;
+    result().rays += totals.rays;
+    result().bad_samples += totals.bad_samples;
+    auto& examples = result().bad_sample_examples;
+    examples.insert(examples.end(), totals.bad_sample_examples.begin(), totals.bad_sample_examples.end());
+    keep_few(examples);
+    if (observer_.is_due(seconds())) observer_.post(progress());
+  }
+
+  RenderProgress progress() const {
+    RenderProgress p;
+    p.seconds = seconds();
+    p.samples = result().samples;
+    p.samples_per_pixel = samples_per_pixel();
+    p.rays = result().rays;
+    if (!result().convergence.empty()) p.error = result().convergence.back().error;
+    p.fraction = p.seconds / options_.limits.seconds;
+    if (options_.limits.spp > 0) p.fraction = std::max(p.fraction, p.samples_per_pixel / options_.limits.spp);
+    if (options_.limits.error > 0 && !result().convergence.empty()) {
+      // Squared error falls as one over the samples, and is looked at where a pass ends.
+      const auto& last = result().convergence.back();
+      const double needed = last.samples_per_pixel * square(excess(last.error, options_.limits.error));
+      double end = state_.done + state_.pass.size();
+      while (end < needed && end < 1e9) end += pass_size(uint32_t(end));
+      p.fraction = std::max(p.fraction, p.samples_per_pixel / end);
+    }
+    p.fraction = std::min(1.0, p.fraction);
+    return p;
+  }
+
+  const Scene& scene_;
+  const Camera& camera_;
+  const Integrator& integrator_;
+  const RenderSettings& options_;
+  const Crop crop_;
+  const std::atomic<bool>& stop_;
+  const RenderHooks hooks_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  RenderState state_;
+  const double seconds_before_;  ///< of rendering, by those who did what state_ began with
+  double next_save_ = 0;
+  double saving_ = 0;  ///< seconds taken by saves, in which nothing was rendered
+  std::atomic<bool> unsaved_ = false;
+  std::optional<StopReason> reason_;
+  std::mutex mutex_;
+  ObserverThread observer_{hooks_.observe};
+};
+
+}  // namespace
+
+RenderResult render(const Scene& scene, const Camera& camera, const Integrator& integrator,
+                    const RenderSettings& options, const std::atomic<bool>& stop, RenderHooks hooks) {
+  return Renderer(scene, camera, integrator, options, stop, std::move(hooks)).run();
+}
+
+}  // namespace vernier

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/film/error_estimate.h"
+#include "core/film/film.h"
+#include "integrators/integrator.h"
+#include "integrators/render/missing_light.h"
+
+namespace vernier {
+
+class Camera;
+class Scene;
+struct RenderState;
+
+/// State after some tiles; handed to the observer a few times a second at most, on a thread of its own.
+struct RenderProgress {
+  double seconds = 0;
+  double fraction = 0;  ///< of what was asked for, by the limit that is nearest; in [0, 1]
+  double samples_per_pixel = 0;
+  uint64_t samples = 0;  ///< camera samples in total
+  RayCounts rays;
+  std::optional<ErrorEstimate> error;  ///< as of the last pass after which it was looked at
+};
+
+/// A sample that was not finite or was negative, so that it can be replayed. x, y are in the full picture.
+struct BadSample {
+  int x = 0, y = 0;
+  int half = 0;
+  uint32_t index = 0;  ///< within the half
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 reads what the compiler writes
+  auto operator<=>(const BadSample&) const = default;
+};
+
+enum class StopReason { samples, time, error, interrupted };
+
+struct RenderResult {
+  explicit RenderResult(Film empty) : film(std::move(empty)) {}
+
+  Film film;  ///< of the crop's size
+  StopReason reason = StopReason::samples;
+  ErrorEstimate error;
+  /// Error after passes, in order, and at the end: how this render converged.
+  struct Look {
+    double seconds, samples_per_pixel;
+    ErrorEstimate error;
+  };
+  std::vector<Look> convergence;
+  double seconds = 0;
+  uint64_t samples = 0;
+  RayCounts rays;
+  MissingEstimate missing;                     ///< known bias, which `error` does not contain
+  uint64_t bad_samples = 0;                    ///< rejected by the film
+  std::vector<BadSample> bad_sample_examples;  ///< the first few by column, row, half and index
+};
+
+/// Who is told of a render on its way, and where it starts.
+struct RenderHooks {
+  /// Holds up nothing but the end of render(), which waits for it to return. Once it has thrown it is told no
+  /// more.
+  std::function<void(const RenderProgress&)> observe = {};
+  /// Gets the state after each `save_interval` seconds of rendering, but no sooner than after twenty times as
+  /// long as the last save took (0: after every tile), and once at the end. Called on the thread that called
+  /// render() while nothing is rendered; its time counts nowhere.
+  std::function<void(const RenderState&)> save = {};
+  double save_interval = std::numeric_limits<double>::infinity();
+  /// A state (integrators/render_state.h) to go on from, of a render with the same options but for its
+  /// limits; null: from the beginning. It is emptied. The limits, and all figures, are of the whole render.
+  std::shared_ptr<RenderState> from = nullptr;
+};
+
+/// Renders tiles of the picture in passes on all threads. The same bytes for any number of threads, and
+/// wherever a render with the same limits was cut and gone on with. `stop` may become true at any time (from
+/// a signal handler): rendering then ends within about a tile, with what is there.
+RenderResult render(const Scene& scene, const Camera& camera, const Integrator& integrator,
+                    const RenderSettings& options, const std::atomic<bool>& stop, RenderHooks hooks = {});
+
+}  // namespace vernier

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrators/render/render_state.h"
+
+#include <algorithm>
+
+namespace vernier {
+namespace {
+
+bool is_plausible(const RenderResult::Look& look) {
+  constexpr double most = 1e10;  // seconds are three centuries
+  const auto is_within = [](double value) { return value >= 0 && value <= most; };
+  return is_within(look.seconds) && is_within(look.samples_per_pixel) && is_within(look.error.unreliable);
+}
+
+bool is_plausible(const BadSample& bad) {
+  return bad.x >= 0 && bad.y >= 0 && (bad.half == 0 || bad.half == 1) &&
+         bad.index <= 2 * RenderState::most_samples;
+}
+
+uint64_t accepted_samples(const Film& film) {
+  uint64_t sum = 0;
+  for (int y = 0; y < film.height(); ++y)
+    for (int x = 0; x < film.width(); ++x)
+      for (int half = 0; half < Film::halves; ++half) sum += film.samples(x, y, half);
+  return sum;
+}
+
+}  // namespace
+
+const char* implausible_part(const RenderState& state) {
+  const RenderResult& so_far = state.so_far;
+  const auto all = [](const auto& values, const auto& holds) {
+    return std::all_of(values.begin(), values.end(), holds);
+  };
+  if (!so_far.film.is_plausible() || accepted_samples(so_far.film) + so_far.bad_samples != so_far.samples)
+    return "film";
+  if (!state.guides[0].is_plausible()) return "guide 1";
+  if (!state.guides[1].is_plausible()) return "guide 2";
+  const auto is_count = [](uint32_t count) { return count <= RenderState::most_samples; };
+  if (!all(state.drawn.guiding, is_count) || !all(state.drawn.extra, is_count)) return "extra";
+  if (!all(state.light, [](const TileLight& light) { return light.is_plausible(); })) return "light";
+  if (!all(state.parts, [&](uint32_t part) { return part <= state.pass.size(); })) return "parts";
+  if (!all(so_far.convergence, [](const auto& look) { return is_plausible(look); })) return "looks";
+  if (!all(so_far.bad_sample_examples, [](const auto& bad) { return is_plausible(bad); }))
+    return "bad samples";
+  return nullptr;
+}
+
+}  // namespace vernier

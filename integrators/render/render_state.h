@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "integrators/render/render.h"
+#include "integrators/render/sample_plan.h"
+
+namespace vernier {
+
+/// A render between two tiles: all that it takes to go on as if it had never stopped. Passes are planned
+/// from what complete passes have found and are completed before the next is planned, so it does not matter
+/// where a render was cut.
+struct RenderState {
+  static constexpr int tile_size = 16;  ///< pixels a side of what is rendered without looking up
+
+  /// More samples a pixel than any render takes, and few enough for an int to hold twice as many.
+  static constexpr uint32_t most_samples = 1 << 30;
+
+  /// Of a picture, or crop, of which nothing is rendered yet.
+  RenderState(int width, int height, bool adaptive)
+      : so_far(Film(width, height)),
+        guides{SampleGuide(adaptive ? width : 0, height), SampleGuide(adaptive ? width : 0, height)},
+        drawn{{}, std::vector<uint32_t>(adaptive ? size_t(width) * height * Film::halves : 0)},
+        light(size_t(tile_count())) {}
+
+  /// Of a picture, or crop, of this size.
+  static int tile_count(int width, int height) {
+    return ((width + tile_size - 1) / tile_size) * ((height + tile_size - 1) / tile_size);
+  }
+  int tile_columns() const { return (so_far.film.width() + tile_size - 1) / tile_size; }
+  int tile_count() const { return tile_count(so_far.film.width(), so_far.film.height()); }
+
+  static constexpr size_t bytes_per_pixel(bool adaptive) {
+    // Guides, the plan, and which samples come next.
+    const size_t guiding =
+        Film::halves * (SampleGuide::bytes_per_pixel() + sizeof(uint16_t) + sizeof(uint32_t));
+    return Film::bytes_per_pixel() + (adaptive ? guiding : 0);
+  }
+  /// Whether a render of a picture, or crop, of this size can go on from it.
+  bool fits(int width, int height, bool adaptive) const {
+    return so_far.film.width() == width && so_far.film.height() == height &&
+           guides[0].bytes().empty() == !adaptive;
+  }
+
+  RenderResult so_far;                           ///< `reason` and `error` are not known yet
+  std::array<SampleGuide, Film::halves> guides;  ///< empty without adaptive sampling
+  SamplesDrawn drawn;                            ///< which samples come next
+  std::vector<TileLight> light;                  ///< by tile, of the samples that all pixels get alike
+  uint32_t done = 0;                             ///< samples a pixel of all complete passes
+  uint32_t looked_at = 0;                        ///< `done` when the error was last looked at
+  SamplePlan pass;                               ///< the one that is under way; of no samples: none is
+  std::vector<uint32_t> parts;                   ///< how much of it each tile has done, in samples a pixel
+};
+
+/// The name of a part of a state, as checkpoints call it, whose values no render can have led to and which
+/// might be indexed out of bounds, never come to an end, or give undefined numbers; null where there is none.
+const char* implausible_part(const RenderState& state);
+
+}  // namespace vernier

@@ -1,0 +1,85 @@
+#include "integrators/render/visible_light.h"
+
+#include <vector>
+
+#include "core/base/names.h"
+#include "core/base/parallel.h"
+#include "integrators/integrator.h"
+#include "integrators/render/first_hit.h"
+#include "scene/camera.h"
+#include "scene/segment.h"
+
+namespace vernier {
+namespace {
+
+constexpr int grid = 24;              // pixels a side
+constexpr int samples_per_pixel = 8;  // a power of two, for stratification
+constexpr uint64_t seed = 0;
+/// Of the radiance that a white environment of radiance 1 would make visible.
+constexpr float faint = 0.01f;
+
+/// Sums over a pixel's samples that meet a surface.
+struct PixelLight {
+  int covered = 0;
+  float scattered = 0, emitted = 0, albedo = 0;
+};
+
+void look(const Scene& scene, const Integrator& integrator, const Ray& ray, Sampler& sampler,
+          PixelLight& pixel) {
+  const auto hit = intersect_from_camera(scene, camera_segment(scene, ray));
+  if (!hit) return;
+  ++pixel.covered;
+  const float emitted = luminance(scene.emitted(nullptr, ray, &*hit).radiance);
+  const float total = luminance(integrator.estimate(scene, ray, sampler).radiance);
+  if (std::isfinite(total)) pixel.scattered += std::max(0.f, total - emitted);
+  pixel.emitted += emitted;
+  pixel.albedo += luminance(shade(scene, *hit, -ray.direction).albedo());
+}
+
+}  // namespace
+
+VisibleLight visible_light(const Scene& scene, const Camera& camera, int width, int height) {
+  const auto integrator = find_by_name(integrators(), "integrator", "path").make(IntegratorOptions{});
+  std::vector<PixelLight> pixels(size_t(grid) * grid);
+  parallel_for(pixels.size(), [&](size_t i) {
+    for (uint32_t sample = 0; sample < samples_per_pixel; ++sample) {
+      Sampler sampler(uint32_t(i), sample, seed);
+      const Vec2f at = (Vec2f(float(i % grid), float(i / grid)) + sampler.next2()) / float(grid);
+      look(scene, *integrator, camera.ray({at.x * float(width), at.y * float(height)}), sampler, pixels[i]);
+    }
+  });
+  int covered = 0, lit = 0, shown = 0;
+  for (const PixelLight& pixel : pixels) {
+    if (pixel.covered == 0) continue;
+    ++covered;
+    const bool is_lit = pixel.scattered > 0 && pixel.scattered >= faint * pixel.albedo;
+    lit += is_lit;
+    shown += is_lit || pixel.emitted >= faint * float(pixel.covered);
+  }
+  if (covered == 0) return {};
+  return {float(lit) / float(covered), float(shown) / float(covered)};
+}
+
+double covered_luminance(const Film& film, const Scene& scene, const Camera& camera,
+                         const RenderSettings& options) {
+  constexpr int most_a_side = 64;
+  const int stride = (std::max(film.width(), film.height()) + most_a_side - 1) / most_a_side;
+  const FirstHits first_hits(scene, camera, options, film);
+  double covered_sum = 0, sum = 0;
+  int covered = 0, count = 0;
+  for (int y = std::min(stride, film.height()) / 2; y < film.height(); y += stride)
+    for (int x = std::min(stride, film.width()) / 2; x < film.width(); x += stride) {
+      const double value = luminance(Rgb(Vec3f(film.pixel(x, y))));
+      sum += value;
+      ++count;
+      if (!first_hits.at_center(x, y)) continue;
+      covered_sum += value;
+      ++covered;
+    }
+  if (covered > 0) return covered_sum / covered;
+  return count > 0 ? sum / count : 0;
+}
+
+bool is_dark(const VisibleLight& light) { return light.lit < 0.1f && light.shown < 0.5f; }
+
+}  // namespace vernier

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "core/film/film.h"
+#include "integrators/render/render.h"
+
+namespace vernier {
+
+/// How well a scene shows itself to a camera, by parts of the pixels in which there is a surface; 0 where
+/// there is none.
+struct VisibleLight {
+  /// Light from elsewhere arrives: what is scattered is at least a hundredth of what a white environment
+  /// would make of the surface.
+  float lit = 0;
+  /// Those, and the ones that shine of themselves at least as brightly as that would make a white surface.
+  float shown = 0;
+};
+
+/// Path traced on a coarse grid: a few thousand paths with numbers of their own, so that the answer depends
+/// on the scene and the camera alone. `width` and `height` are the camera's.
+VisibleLight visible_light(const Scene& scene, const Camera& camera, int width, int height);
+
+/// Whether a picture would be all but black: light from elsewhere reaches less than a tenth of what the
+/// camera sees, and less than half of it is shown at all. A glowing display lights nothing else and leaves
+/// its model dark; a lamp in the night lights more than that, and a model whose colours are all emitted
+/// needs no light.
+bool is_dark(const VisibleLight& light);
+
+/// Mean luminance of a rendered picture over the pixels whose centres see a surface, or over all where none
+/// does; a few thousand of them are looked at.
+double covered_luminance(const Film& film, const Scene& scene, const Camera& camera,
+                         const RenderSettings& options);
+
+}  // namespace vernier
