@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "apps/own_symbols.h"
 
 #include <elf.h>

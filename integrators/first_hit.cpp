@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "integrators/first_hit.h"
 
 #include "integrators/camera_sample.h"

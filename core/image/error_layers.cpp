@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/base/parallel.h"
 #include "core/image/error_estimate.h"
 #include "core/image/metrics.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/image/pixel_evidence.h"
 
 #include "core/base/parallel.h"

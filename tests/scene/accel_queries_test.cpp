@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scene/accel/bvh.h"
 #include "scene/accel/proof/agreement.h"
 #include "scene/accel/proof/invariance.h"
