@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # From a fresh clone to pictures or test results with one command. See `bash bootstrap.sh help`.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"

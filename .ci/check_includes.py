@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Checks that folders include only leftward (vernier <- core <- materials <- scene <- integrators <- apps) and that third-party
 headers stay in the files that wrap them."""
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Runs clang-tidy with the checks of .clang-tidy over every source file, on all processors.
 
 What passed is remembered by the content that the compiler sees, as ccache does, so that only what changed is looked at

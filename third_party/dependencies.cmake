@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Every third-party package in one place; third_party/README.md has version, licence and reason of each.
 find_package(Threads REQUIRED)
 find_package(TBB REQUIRED)

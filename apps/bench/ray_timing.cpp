@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "apps/bench/ray_timing.h"
 
 #include <algorithm>

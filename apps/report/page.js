@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws every <canvas data-chart="ID"> from the JSON of the <script id="ID">: curves over logarithmic axes.
 (function () {
   'use strict';

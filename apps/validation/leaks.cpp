@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "apps/validation/leaks.h"
 
 #include "apps/validation/soup.h"

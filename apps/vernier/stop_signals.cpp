@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "apps/vernier/stop_signals.h"
 
 #include "core/base/atomic_file.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/denoise/denoise_filters.h"
 
 namespace vernier {

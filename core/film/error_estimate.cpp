@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/film/error_estimate.h"
 
 #include <limits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/base/parallel.h"
 #include "core/compare/metrics.h"
 #include "core/film/error_estimate.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>

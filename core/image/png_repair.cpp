@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/image/png_repair.h"
 
 #include <zlib.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "integrators/render/first_hit.h"
 
 #include "integrators/render/camera_sample.h"

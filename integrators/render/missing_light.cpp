@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "integrators/render/missing_light.h"
 
 #include "core/compare/metrics.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "integrators/render/observer_thread.h"
 
 namespace vernier {

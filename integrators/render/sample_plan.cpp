@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "integrators/render/sample_plan.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "materials/tables/ggx_anisotropy.h"
 
 #include <array>

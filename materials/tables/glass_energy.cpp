@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "materials/tables/glass_energy.h"
 
 #include <map>

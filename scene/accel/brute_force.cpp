@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scene/accel/brute_force.h"
 
 #include "scene/accel/two_level.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scene/accel/octree.h"
 
 #include <tbb/concurrent_vector.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scene/accel/wide_tree.h"
 
 #include <tbb/blocked_range.h>

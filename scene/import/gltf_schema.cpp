@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The parts of the glTF 2.0 JSON schema (Khronos, "glTF 2.0 Specification", chapter 5) and of its extensions
 // that the importer reads, as a table.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scene/import/specular_glossiness.h"
 
 namespace vernier {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scene/import/vertex_arrays.h"
 
 namespace vernier {

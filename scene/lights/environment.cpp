@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scene/lights/environment.h"
 
 #include "core/base/parallel.h"

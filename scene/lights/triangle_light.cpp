@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scene/lights/triangle_light.h"
 
 #include "core/sampling/spherical_triangle.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/sampling/spherical_triangle.h"
 
 #include <gtest/gtest.h>

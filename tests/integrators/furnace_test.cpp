@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/support/test_scenes.h"
 
 // White furnace: a lossless object in a uniform surrounding cannot be seen.

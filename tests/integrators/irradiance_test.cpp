@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/support/test_scenes.h"
 
 // Light of every kind on a diffuse floor, against its closed form. The floor at the origin is white: seen

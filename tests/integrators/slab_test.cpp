@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/support/test_scenes.h"
 
 // A plane-parallel slab of absorbing glass, seen against a bright half of the sky.

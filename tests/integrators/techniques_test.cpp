@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/support/effort.h"
 #include "tests/support/test_scenes.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scene/segment.h"
 #include "tests/support/test_scenes.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "apps/validation/spawning.h"
 #include "scene/accel/bvh.h"
 #include "tests/scene/accel_support.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "apps/validation/agreement.h"
 #include "apps/validation/structure.h"
 #include "core/base/names.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "apps/validation/agreement.h"
 #include "apps/validation/leaks.h"
 #include "scene/accel/bvh.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <gmock/gmock.h>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes the glTF scenes of this folder: python3 tests/scenes/make_scenes.py
 
 Everything is in metres. Each mesh has its own small buffer as a data URI, so that a scene is one file and its JSON

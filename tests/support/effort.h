@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // How hard the long statistical tests try. The sanitized build looks for bad memory accesses and undefined
