@@ -19,6 +19,7 @@ WRAPPED = [
     (r"OpenColorIO/.*", r"(core/display/[^/]*|tests/core/.*)\.cpp"),
     (r"OpenImageDenoise/.*", r"(core/denoise|tests/oidn)/denoise_oidn[^/]*\.cpp"),
     (r"(draco/.*|meshoptimizer\.h)", r"(tests/)?scene/(import/)?[^/]*\.cpp"),
+    (r"zstd\.h", r"(core/ktx2/level|tests/core/.*)\.cpp"),
     (r"CLI/.*", r"apps/.*"),
     (r"(gtest|gmock)/.*", r"tests/.*"),
 ]

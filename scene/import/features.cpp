@@ -56,12 +56,13 @@ constexpr ExtensionEntry extensions[] = {
     {"KHR_meshopt_compression", Status::exact, "as far as the library decodes it, else refused"},
     {"KHR_mesh_quantization", Status::exact, ""},
     {"KHR_node_visibility", Status::exact, ""},
+    {"KHR_texture_basisu", Status::exact,
+     "the base level is read; the samples of a pixel average the texels they meet"},
     {"KHR_texture_transform", Status::exact, ""},
     {"KHR_xmp_json_ld", Status::exact, "metadata, nothing to render"},
 
     {"KHR_animation_pointer", Status::ignored, "only nodes and morph weights are animated"},
     {"MSFT_lod", Status::ignored, "the most detailed level is rendered"},
-    {"KHR_texture_basisu", Status::ignored, "the texture's PNG or JPEG source is used when it has one"},
 };
 
 struct CoreEntry {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <map>
 
 #include "core/base/fingerprint.h"
 #include "core/base/parallel.h"
@@ -41,24 +41,36 @@ void leave_out_unreadable(MaterialDescription& material, const std::vector<bool>
   });
 }
 
+/// The textures that materials use, by their index.
+std::vector<WantedTexture> used_textures(const std::vector<MaterialDescription>& materials) {
+  std::map<int, WantedTexture> used;
+  for (const auto& material : materials)
+    for_each_texture(material, [&](const TextureUse& use) {
+      if (!use) return;
+      WantedTexture& wanted = used[use.texture];
+      wanted.index = use.texture;
+      const auto encoding = encoding_of(material, use);
+      wanted.as_srgb |= encoding == TexelEncoding::srgb;
+      wanted.as_linear |= encoding == TexelEncoding::linear;
+    });
+  std::vector<WantedTexture> list;
+  for (const auto& [index, wanted] : used) list.push_back(wanted);
+  return list;
+}
+
 /// Decodes the textures that the scene's materials use and renumbers their uses.
 void add_textures(const Document& document, const std::vector<RoughnessFromGlossiness>& derived,
                   SceneDescription& scene, std::vector<std::string>& fingerprints) {
-  std::vector<int> wanted;
-  for (const auto& material : scene.materials)
-    for_each_texture(material, [&](const TextureUse& use) {
-      if (use) wanted.push_back(use.texture);
-    });
-  std::sort(wanted.begin(), wanted.end());
-  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  const std::vector<WantedTexture> wanted = used_textures(scene.materials);
+  std::map<int, int> places;
+  for (const WantedTexture& texture : wanted) places.emplace(texture.index, int(places.size()));
 
   DecodedTextures decoded = read_textures(document, wanted, derived, scene.notices);
   scene.textures = std::move(decoded.textures);
   fingerprints.insert(fingerprints.end(), decoded.fingerprints.begin(), decoded.fingerprints.end());
   for (auto& material : scene.materials) {
     for_each_texture(material, [&](TextureUse& use) {
-      if (use)
-        use.texture = int(std::lower_bound(wanted.begin(), wanted.end(), use.texture) - wanted.begin());
+      if (use) use.texture = places.at(use.texture);
     });
     leave_out_unreadable(material, decoded.unreadable);
   }

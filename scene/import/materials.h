@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "scene/import/document.h"
@@ -38,6 +39,15 @@ void for_each_texture(Material& m, const Visit& visit) {
                     &m.anisotropy_texture, &m.iridescence_texture, &m.iridescence_thickness_texture,
                     &m.diffuse_transmission_texture, &m.diffuse_transmission_color_texture})
     visit(*use);
+}
+
+/// How glTF reads red, green and blue in a slot of the material; empty where alpha alone is read.
+inline std::optional<TexelEncoding> encoding_of(const MaterialDescription& m, const TextureUse& slot) {
+  if (&slot == &m.specular_texture || &slot == &m.sheen_roughness_texture) return std::nullopt;
+  for (const auto* color : {&m.base_color_texture, &m.emissive_texture, &m.specular_color_texture,
+                            &m.sheen_color_texture, &m.diffuse_transmission_color_texture})
+    if (&slot == color) return TexelEncoding::srgb;
+  return TexelEncoding::linear;
 }
 
 }  // namespace vernier

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -16,21 +16,32 @@
 namespace vernier {
 namespace {
 
-bool is_ktx2(std::span<const uint8_t> bytes) {
-  const uint8_t signature[] = {0xAB, 'K', 'T', 'X', ' ', '2', '0', 0xBB, '\r', '\n', 0x1A, '\n'};
-  return bytes.size() >= sizeof(signature) && std::memcmp(bytes.data(), signature, sizeof(signature)) == 0;
-}
+/// An image that a texture may be read from.
+struct Candidate {
+  int image = -1;
+  const char* extension = nullptr;  ///< that names it; null: it is the texture's own
 
-/// Images that a texture may be read from, the best first.
-std::vector<int> candidate_images(const tinygltf::Texture& texture) {
-  std::vector<int> images;
-  for (const char* name : {"EXT_texture_webp", "KHR_texture_basisu"}) {
+  bool is_basisu() const { return extension == basisu; }
+  static constexpr const char* basisu = "KHR_texture_basisu";
+};
+
+/// The best first.
+std::vector<Candidate> candidates_of(const tinygltf::Texture& texture) {
+  std::vector<Candidate> candidates;
+  for (const char* name : {"EXT_texture_webp", Candidate::basisu}) {
     const auto extension = texture.extensions.find(name);
     if (extension != texture.extensions.end())
-      images.push_back(extension->second.Get("source").GetNumberAsInt());
+      candidates.push_back({extension->second.Get("source").GetNumberAsInt(), name});
   }
-  if (texture.source >= 0) images.push_back(texture.source);
-  return images;
+  if (texture.source >= 0) candidates.push_back({texture.source});
+  return candidates;
+}
+
+/// Why the image cannot be used; empty: it can.
+std::string problem_of(const Candidate& candidate, const std::map<int, DecodedImage>& images) {
+  const DecodedImage& image = images.at(candidate.image);
+  if (!image.pixels) return image.problem;
+  return candidate.is_basisu() ? image.basisu_problem : std::string();
 }
 
 /// Decodes, in parallel, those of the images that are not there yet.
@@ -47,15 +58,15 @@ void decode_missing(const Document& document, const std::vector<int>& indices,
 /// Decodes each texture's best image, and the next best where that fails.
 std::map<int, DecodedImage> decode_images(const Document& document, const std::vector<int>& textures) {
   std::map<int, DecodedImage> images;
-  std::vector<std::vector<int>> candidates;
+  std::vector<std::vector<Candidate>> candidates;
   candidates.reserve(textures.size());
   for (const int texture : textures)
-    candidates.push_back(candidate_images(document.model().textures[size_t(texture)]));
+    candidates.push_back(candidates_of(document.model().textures[size_t(texture)]));
   for (size_t rank = 0; rank < 3; ++rank) {
     std::vector<int> wanted;
     for (const auto& list : candidates)
-      if (rank < list.size() && (rank == 0 || !images.at(list[rank - 1]).pixels))
-        wanted.push_back(list[rank]);
+      if (rank < list.size() && (rank == 0 || !problem_of(list[rank - 1], images).empty()))
+        wanted.push_back(list[rank].image);
     decode_missing(document, wanted, images);
   }
   return images;
@@ -76,23 +87,74 @@ Texture make_texture(const Document& document, const tinygltf::Texture& source,
           nearest ? FilterMode::nearest : FilterMode::linear};
 }
 
-/// The first of the candidates that has pixels; without one, why the last has none.
-DecodedImage first_decoded(const std::map<int, DecodedImage>& images, const std::vector<int>& candidates) {
-  DecodedImage result;
-  result.problem = "it has no image";
-  for (const int candidate : candidates) {
-    const auto image = images.find(candidate);
-    if (image == images.end()) break;
-    result = image->second;
-    if (result.pixels) break;
+/// What a texture is read from.
+struct Choice {
+  const DecodedImage* image = nullptr;  ///< null: there is nothing
+  std::string problem = "it has no image";
+  const char* failed_extension = nullptr;  ///< whose image has the problem, if there is one
+};
+
+/// The first candidate that can be used, and what was wrong with the first of those before it.
+Choice choose(const std::map<int, DecodedImage>& images, const std::vector<Candidate>& candidates) {
+  Choice choice;
+  for (const Candidate& candidate : candidates) {
+    const std::string problem = problem_of(candidate, images);
+    if (problem.empty()) {
+      choice.image = &images.at(candidate.image);
+      break;
+    }
+    if (choice.failed_extension) continue;
+    choice.problem = problem;
+    choice.failed_extension = candidate.extension;
   }
-  return result;
+  return choice;
 }
 
 std::shared_ptr<const Image8> magenta_texel() {
   auto image = std::make_shared<Image8>(1, 1, 3);
   image->values = {255, 0, 255};
   return image;
+}
+
+/// KTX2 without an alpha that means anything takes three channels, as other files do.
+Image8 to_image(const ktx2::Texture& texture) {
+  const std::vector<uint8_t>& rgba = texture.rgba;
+  bool is_opaque = true;
+  for (size_t i = 3; i < rgba.size(); i += 4) is_opaque = is_opaque && rgba[i] == 255;
+  Image8 image(int(texture.width), int(texture.height), is_opaque ? 3 : 4);
+  for (size_t i = 0, at = 0; i < rgba.size(); i += 4)
+    for (size_t c = 0; c < size_t(image.channels); ++c) image.values[at++] = rgba[i + c];
+  return image;
+}
+
+void decode_ktx2(std::span<const uint8_t> bytes, const std::string& name, DecodedImage& image) {
+  try {
+    ktx2::Texture texture = ktx2::decode(bytes);
+    image.pixels = std::make_shared<Image8>(to_image(texture));
+    image.remarks.insert(image.remarks.end(), texture.remarks.begin(), texture.remarks.end());
+    image.transfer = texture.transfer;
+    if (!texture.is_basis_universal)
+      image.basisu_problem = name +
+                             ": KTX2: its texels are uncompressed (vkFormat is not 0), the extension allows "
+                             "Basis Universal only";
+  } catch (const Error& e) {
+    image.problem = name + ": " + e.what();
+  }
+}
+
+/// glTF tells by what a texture is used for how it is read; a KTX2 file says so once more. Empty: they agree.
+std::string transfer_problem(const WantedTexture& wanted, const DecodedImage& image) {
+  using Transfer = ktx2::TransferFunction;
+  if (!image.transfer) return {};
+  const char* stated = *image.transfer == Transfer::srgb     ? "sRGB"
+                       : *image.transfer == Transfer::linear ? "linear"
+                                                             : "neither sRGB nor linear";
+  if (wanted.as_srgb && *image.transfer != Transfer::srgb)
+    return fmt::format("holds colors, which glTF has as sRGB, and is read so; its KTX2 file says {}", stated);
+  if (wanted.as_linear && *image.transfer != Transfer::linear)
+    return fmt::format("holds numbers, which glTF has as linear, and is read so; its KTX2 file says {}",
+                       stated);
+  return {};
 }
 
 }  // namespace
@@ -116,12 +178,13 @@ DecodedImage decode_image(const Document& document, int index) {
     bytes = file.span();
     if (!is_data_uri(source.uri)) image.fingerprint = fingerprint(bytes);
   }
-  if (is_ktx2(bytes)) {
-    image.problem = "KTX2 (Basis Universal) images cannot be decoded; convert it to PNG, JPEG or WebP";
+  const std::string name = document.files().scene_path() + place;
+  if (ktx2::is_ktx2(bytes)) {
+    decode_ktx2(bytes, name, image);
     return image;
   }
   try {
-    PartialImage8 decoded = decode_partial_image8(bytes, document.files().scene_path() + place);
+    PartialImage8 decoded = decode_partial_image8(bytes, name);
     image.pixels = std::make_shared<Image8>(std::move(decoded.image));
     if (!decoded.damage.empty()) image.remarks.push_back(decoded.damage);
   } catch (const Error& e) {
@@ -131,7 +194,32 @@ DecodedImage decode_image(const Document& document, int index) {
   return image;
 }
 
-DecodedTextures read_textures(const Document& document, const std::vector<int>& wanted,
+namespace {
+
+/// Reports how a texture's images were found: the notices of read_textures, and its error.
+void report(const Document& document, int texture, const Choice& choice, std::vector<Notice>& notices) {
+  const std::string place = fmt::format("/textures/{}", texture);
+  const std::string& name = document.model().textures[size_t(texture)].name;
+  const char* extension = choice.failed_extension;
+  if (choice.image) {
+    if (extension)
+      notices.push_back({Notice::Severity::warning, place,
+                         fmt::format("the image that {} gives texture '{}' cannot be used and another stands "
+                                     "for it: {}",
+                                     extension, name, choice.problem)});
+    return;
+  }
+  const std::string problem = fmt::format("texture '{}' cannot be read: {}", name, choice.problem);
+  const auto& required = document.model().extensionsRequired;
+  if (extension && std::find(required.begin(), required.end(), extension) != required.end())
+    document.fail(place, fmt::format("{}; the file requires {} and has no other image", problem, extension));
+  notices.push_back({Notice::Severity::warning, place,
+                     problem + ". Where it colours a surface that is magenta, elsewhere it is left out"});
+}
+
+}  // namespace
+
+DecodedTextures read_textures(const Document& document, const std::vector<WantedTexture>& wanted,
                               const std::vector<RoughnessFromGlossiness>& derived,
                               std::vector<Notice>& notices) {
   const auto& textures = document.model().textures;
@@ -140,25 +228,23 @@ DecodedTextures read_textures(const Document& document, const std::vector<int>& 
     return index < from_file ? index : derived[size_t(index - from_file)].texture;
   };
   std::vector<int> sources;
-  for (const int index : wanted) sources.push_back(source_of(index));
+  for (const WantedTexture& texture : wanted) sources.push_back(source_of(texture.index));
   const std::map<int, DecodedImage> images = decode_images(document, sources);
 
   DecodedTextures result;
-  std::set<int> unreadable;
-  for (const int index : wanted) {
-    const int source = source_of(index);
-    const DecodedImage chosen = first_decoded(images, candidate_images(textures[size_t(source)]));
-    std::shared_ptr<const Image8> pixels = chosen.pixels;
-    result.unreadable.push_back(!pixels);
-    if (!pixels && unreadable.insert(source).second)
-      notices.push_back({Notice::Severity::warning, fmt::format("/textures/{}", source),
-                         fmt::format("texture '{}' cannot be read: {}. Where it colours a surface that is "
-                                     "magenta, elsewhere it is left out",
-                                     textures[size_t(source)].name, chosen.problem)});
-    if (!pixels)
-      pixels = magenta_texel();
-    else if (index >= from_file)
-      pixels = roughness_of(*pixels, derived[size_t(index - from_file)].factor);
+  std::set<int> reported;
+  for (const WantedTexture& texture : wanted) {
+    const int source = source_of(texture.index);
+    const Choice choice = choose(images, candidates_of(textures[size_t(source)]));
+    if (reported.insert(source).second) report(document, source, choice, notices);
+    result.unreadable.push_back(!choice.image);
+    std::shared_ptr<const Image8> pixels = choice.image ? choice.image->pixels : magenta_texel();
+    if (choice.image && texture.index >= from_file)
+      pixels = roughness_of(*pixels, derived[size_t(texture.index - from_file)].factor);
+    else if (choice.image)
+      if (const std::string problem = transfer_problem(texture, *choice.image); !problem.empty())
+        notices.push_back({Notice::Severity::warning, fmt::format("/textures/{}", source),
+                           fmt::format("texture '{}' {}", textures[size_t(source)].name, problem)});
     result.textures.push_back(make_texture(document, textures[size_t(source)], std::move(pixels)));
   }
   for (const auto& [index, image] : images) {

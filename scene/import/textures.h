@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,14 +13,22 @@ namespace vernier {
 
 /// An image of a file, decoded.
 struct DecodedImage {
-  std::shared_ptr<const Image8> pixels;  ///< null: missing or cannot be decoded
-  std::string problem;                   ///< why there are no pixels
-  std::vector<std::string> remarks;      ///< what a user should know about those there are
-  std::string fingerprint;               ///< empty: in a buffer or not read
+  std::shared_ptr<const Image8> pixels;            ///< null: missing or cannot be decoded
+  std::string problem;                             ///< why there are no pixels
+  std::vector<std::string> remarks;                ///< what a user should know about those there are
+  std::string fingerprint;                         ///< empty: in a buffer or not read
+  std::optional<ktx2::TransferFunction> transfer;  ///< that the file states; other kinds of files do not
+  std::string basisu_problem;  ///< why KHR_texture_basisu does not allow the pixels; empty: it does
 };
 
 /// Reads and decodes an image by its index. Throws Error(input) on a reference that is not to be followed.
 DecodedImage decode_image(const Document& document, int index);
+
+/// A texture that materials use, and what for.
+struct WantedTexture {
+  int index = -1;
+  bool as_srgb = false, as_linear = false;
+};
 
 /// Textures of a file, decoded.
 struct DecodedTextures {
@@ -29,9 +38,11 @@ struct DecodedTextures {
 };
 
 /// Reads and decodes the textures asked for, in parallel; textures of one image share its pixels. They are
-/// indices of the file or, beyond those, of `derived`. A missing image or one that cannot be decoded becomes
-/// magenta, with a notice. Throws Error(input) on a reference that is not to be followed.
-DecodedTextures read_textures(const Document& document, const std::vector<int>& wanted,
+/// indices of the file or, beyond those, of `derived`. Images that extensions name come first; where one is
+/// missing or cannot be decoded the texture's own stands for it, and a magenta texel for that, each with a
+/// notice. Throws Error(input) on a reference that is not to be followed, and where the file requires the
+/// extension of an image that nothing stands for.
+DecodedTextures read_textures(const Document& document, const std::vector<WantedTexture>& wanted,
                               const std::vector<RoughnessFromGlossiness>& derived,
                               std::vector<Notice>& notices);
 
