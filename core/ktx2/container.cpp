@@ -5,8 +5,8 @@
 #include <array>
 #include <string_view>
 
-#include "core/base/error.h"
 #include "core/ktx2/little_endian.h"
+#include "vernier/error.h"
 
 namespace vernier::ktx2 {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/ktx2/etc1s.h"
 
-#include "core/base/error.h"
 #include "core/ktx2/etc1s_codebook.h"
 #include "core/ktx2/etc1s_slice.h"
 #include "core/ktx2/texels.h"
+#include "vernier/error.h"
 
 namespace vernier::ktx2 {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "core/base/error.h"
+#include "vernier/error.h"
 
 namespace vernier::ktx2 {
 

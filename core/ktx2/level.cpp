@@ -3,7 +3,7 @@
 
 #include <zstd.h>
 
-#include "core/base/error.h"
+#include "vernier/error.h"
 
 namespace vernier::ktx2 {
 namespace {

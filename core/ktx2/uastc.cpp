@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/ktx2/uastc.h"
 
-#include "core/base/error.h"
 #include "core/ktx2/level.h"
 #include "core/ktx2/texels.h"
 #include "core/ktx2/uastc_block.h"
+#include "vernier/error.h"
 
 namespace vernier::ktx2 {
 
