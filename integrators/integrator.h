@@ -10,23 +10,12 @@
 #include "core/math/ray.h"
 #include "core/sampling/sampler.h"
 #include "vernier/math.h"
+#include "vernier/result.h"
 #include "vernier/settings.h"
 
 namespace vernier {
 
 class Scene;
-
-/// Rays a sample has cast, by purpose.
-struct RayCounts {
-  uint64_t camera = 0, bounce = 0, shadow = 0;
-
-  RayCounts& operator+=(const RayCounts& other) {
-    camera += other.camera;
-    bounce += other.bounce;
-    shadow += other.shadow;
-    return *this;
-  }
-};
 
 /// Light that a sample knows of and leaves out, in the unit of its radiance.
 struct MissingLight {
@@ -66,6 +55,10 @@ struct IntegratorEntry {
 
 /// All integrators (integrators/registry.cpp).
 std::span<const IntegratorEntry> integrators();
+
+/// The one of that name. Throws Error(usage) on an unknown name or something to show that there is not,
+/// listing what there is, and on a depth that it cannot follow.
+std::unique_ptr<Integrator> make_integrator(const std::string& name, const IntegratorOptions& options);
 
 /// Names that raycast's IntegratorOptions::show takes.
 std::span<const std::string_view> raycast_shows();

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 
+#include "core/base/names.h"
 #include "integrators/integrator.h"
+#include "vernier/error.h"
 
 namespace vernier {
 
@@ -16,6 +19,16 @@ std::span<const IntegratorEntry> integrators() {
       {"raycast", "primary hits: normals, depth, ids, ... (--show)", make_raycast},
   }};
   return table;
+}
+
+std::unique_ptr<Integrator> make_integrator(const std::string& name, const IntegratorOptions& options) {
+  const IntegratorEntry& entry = find_by_name(integrators(), "integrator", name);
+  if (options.max_depth < 1)
+    throw Error(ErrorKind::usage, "a path has at least one vertex; set IntegratorOptions::max_depth");
+  const std::vector<std::string> shows(raycast_shows().begin(), raycast_shows().end());
+  if (std::find(shows.begin(), shows.end(), options.show) == shows.end())
+    throw_unknown_name("--show", options.show, shows);
+  return entry.make(options);
 }
 
 }  // namespace vernier

@@ -1,8 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/framing.h"
 
+#include "core/math/frame.h"
+#include "scene/scene.h"
+#include "scene/subject.h"
+
 namespace vernier {
 namespace {
+
+/// From the front right and a little above, as product pictures are taken.
+constexpr float default_azimuth = pi / 6, default_elevation = pi / 12;
+
+/// From the scene's centre to the viewer.
+Vec3f orbit_direction(float azimuth, float elevation) {
+  return {std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+          std::cos(azimuth) * std::cos(elevation)};
+}
+
+/// Straight up and down, the front of the scene stays at the bottom of the picture and at the top.
+Vec3f orbit_up(float azimuth, float elevation) { return orbit_direction(azimuth, elevation + pi / 2); }
 
 /// One side of the picture at a time: `across` is its direction in the world, `back` the way to the viewer.
 /// A point p lies in the view of slope t from (center, distance) when |p.across - center| <= t (distance -
@@ -83,6 +99,48 @@ CameraDescription fit_camera(CameraDescription camera, const FarthestPoint& fart
   }
   camera.to_world = {Vec3f(right), Vec3f(up), Vec3f(back), Vec3f(right * x + up * y + back * z)};
   return camera;
+}
+
+void turn(CameraDescription& camera, const Vec3f& back, const Vec3f& up) {
+  // About back, the x axis of this frame lies toward up.
+  const Frame frame = Frame::from_normal_tangent(back, up);
+  camera.to_world.x = -frame.y;
+  camera.to_world.y = frame.x;
+  camera.to_world.z = back;
+}
+
+void roll(CameraDescription& camera, float angle) {
+  if (angle == 0) return;
+  Transform& place = camera.to_world;
+  const Vec3f back = normalize(place.z), right = normalize(cross(place.y, back)), up = cross(back, right);
+  place.x = right * std::cos(angle) - up * std::sin(angle);
+  place.y = up * std::cos(angle) + right * std::sin(angle);
+  place.z = back;
+}
+
+CameraDescription fitted_camera(const Subject& subject, float aspect, const FittedView& view) {
+  CameraDescription camera;
+  camera.name = "fitted";
+  camera.yfov = view.yfov;
+  if (view.orthographic) camera.kind = CameraDescription::Kind::orthographic;
+  const float azimuth = view.azimuth.value_or(default_azimuth);
+  const float elevation = view.elevation.value_or(default_elevation);
+  turn(camera, orbit_direction(azimuth, elevation), orbit_up(azimuth, elevation));
+  if (!view.azimuth && !view.elevation && !subject.empty())
+    if (const auto normal = subject.flat_normal(camera.to_world.z))
+      turn(camera, *normal, std::abs(normal->y) < 0.99f ? Vec3f(0, 1, 0) : Vec3f(0, 0, -normal->y));
+  roll(camera, view.roll);
+  const Bounds seen = subject.bounds_to_see();
+  const FarthestPoint farthest = [&](const Vec3f& direction) {
+    if (!subject.empty()) return subject.farthest(direction);
+    return Vec3f(direction.x > 0 ? seen.upper.x : seen.lower.x, direction.y > 0 ? seen.upper.y : seen.lower.y,
+                 direction.z > 0 ? seen.upper.z : seen.lower.z);
+  };
+  return fit_camera(camera, farthest, aspect, view.margin);
+}
+
+CameraDescription fitted_camera(const Scene& scene, float aspect, const FittedView& view) {
+  return fitted_camera(Subject(scene.geometry()), aspect, view);
 }
 
 }  // namespace vernier

@@ -18,4 +18,13 @@ using FarthestPoint = std::function<Vec3f(const Vec3f& direction)>;
 CameraDescription fit_camera(CameraDescription camera, const FarthestPoint& farthest, float aspect,
                              float margin);
 
+/// Turns `camera` so that it looks from `back` (unit) with `up` upward in its picture as far as may be.
+void turn(CameraDescription& camera, const Vec3f& back, const Vec3f& up);
+/// Turns it clockwise about its view, radians.
+void roll(CameraDescription& camera, float angle);
+
+class Subject;
+/// A camera called "fitted" that sees the subject whole.
+CameraDescription fitted_camera(const Subject& subject, float aspect, const FittedView& view);
+
 }  // namespace vernier

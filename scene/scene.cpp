@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 
+#include "core/base/fingerprint.h"
 #include "core/base/names.h"
 #include "core/base/parallel.h"
 #include "scene/emission.h"
@@ -26,8 +29,10 @@ void note_without_volume(std::span<const InstanceDescription> instances, const s
 
 }  // namespace
 
-Scene::Scene(SceneDescription description, const Options& options)
-    : geometry_(std::move(description.meshes), description.instances),
+Scene::Scene(SceneDescription description, const SceneOptions& options)
+    : hash_(std::move(description.hash)),
+      choices_(std::move(description.choices)),
+      geometry_(std::move(description.meshes), description.instances),
       textures_(std::move(description.textures)) {
   compile_materials(description);
   if (std::any_of(materials_.begin(), materials_.end(), [](const Material& m) { return !m.is_opaque(); }))
@@ -35,6 +40,7 @@ Scene::Scene(SceneDescription description, const Options& options)
   const auto& entry = options.accelerator.empty()
                           ? accelerators().front()
                           : find_by_name(accelerators(), "accelerator", options.accelerator);
+  accelerator_name_ = entry.name;
   accelerator_ = entry.build(accelerated_geometry());
   collect_lights(description);
 }
@@ -202,5 +208,24 @@ LightEval Scene::emitted(const SurfacePoint* from, const Ray& ray, const Surface
   light.pdf *= lights_.prob(receiver(*from), size_t(index));
   return light;
 }
+
+std::vector<std::pair<std::string, std::string>> Scene::identity() const {
+  std::vector<std::pair<std::string, std::string>> identity{{"scene", hash_},
+                                                            {"accelerator", accelerator_name_}};
+  identity.insert(identity.end(), choices_.begin(), choices_.end());
+  if (environment_) {
+    const EnvironmentDescription& environment = environment_->description();
+    identity.emplace_back("env", fingerprint(std::as_bytes(std::span(environment.picture->values))));
+    identity.emplace_back("env-rotate", fmt::format("{}", environment.rotation));
+    identity.emplace_back("env-scale", fmt::format("{}", environment.scale));
+  }
+  return identity;
+}
+
+std::shared_ptr<Scene> build_scene(SceneDescription description, const SceneOptions& options) {
+  return std::make_shared<Scene>(std::move(description), options);
+}
+
+const std::vector<Notice>& notices_of(const Scene& scene) { return scene.notices(); }
 
 }  // namespace vernier

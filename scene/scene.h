@@ -20,19 +20,21 @@ namespace vernier {
 /// members may be called from many threads.
 class Scene {
  public:
-  struct Options {
-    std::string accelerator;  ///< name in accelerators(); empty: the default
-  };
-
   /// Takes the description's arrays over.
-  Scene(SceneDescription description, const Options& options);
+  Scene(SceneDescription description, const SceneOptions& options);
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
-  /// Puts an environment around the scene, in place of the one it has, if any. The one change that a scene
-  /// takes, and not while other threads use it: what surroundings it needs is told by looking at it.
+  /// Puts an environment around the scene, in place of the one it has, if any. Not
+  /// while other threads use the scene: what surroundings it needs is told by looking at it.
   void surround(std::shared_ptr<const EnvironmentDescription> description);
   bool has_environment() const { return environment_ != nullptr; }
+
+  /// Answers rays by another accelerator of the same geometry from now on. Not while other threads use the
+  /// scene.
+  void replace_accelerator(std::unique_ptr<Accelerator> accelerator) {
+    accelerator_ = std::move(accelerator);
+  }
 
   /// The first triangle along a ray, whatever it is made of. What light meets: scene/segment.h.
   std::optional<SurfacePoint> intersect(const Ray& ray) const;
@@ -66,6 +68,10 @@ class Scene {
   Geometry accelerated_geometry() const;
   const Bounds& bounds() const { return geometry_.bounds(); }
   const std::vector<Notice>& notices() const { return notices_; }
+  const std::string& accelerator_name() const { return accelerator_name_; }
+  /// What light depends on beside a camera, as names and values: the scene's hash, what was chosen of it, its
+  /// surroundings, the accelerator.
+  std::vector<std::pair<std::string, std::string>> identity() const;
 
  private:
   LightReceiver receiver(const SurfacePoint& point) const;
@@ -74,6 +80,8 @@ class Scene {
   void add_environment(std::shared_ptr<const EnvironmentDescription> description,
                        std::vector<std::unique_ptr<Light>>& lights);
 
+  std::string hash_, accelerator_name_;
+  std::vector<std::pair<std::string, std::string>> choices_;
   SceneGeometry geometry_;
   std::vector<Texture> textures_;
   std::vector<Material> materials_;

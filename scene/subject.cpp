@@ -113,6 +113,14 @@ Subject::Subject(const SceneGeometry& geometry) : geometry_(geometry) {
   if (kept > 0) bounds_ = up_to[kept - 1];
 }
 
+Bounds Subject::bounds_to_see() const {
+  Bounds seen = bounds_;
+  if (!seen.empty()) return seen;
+  seen.add(Vec3f(-1));
+  seen.add(Vec3f(1));
+  return seen;
+}
+
 Vec3f Subject::farthest(const Vec3f& direction) const {
   Farthest best;
   // From the largest, which has the best chance; what cannot reach as far is not looked at.

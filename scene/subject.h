@@ -21,6 +21,8 @@ class Subject {
   size_t left_out() const { return left_out_; }
   /// Of the triangles' corners, in the world.
   const Bounds& bounds() const { return bounds_; }
+  /// The same; some place about the origin when there is nothing to see.
+  Bounds bounds_to_see() const;
   /// The corner of a triangle that lies farthest in a direction. The subject must not be empty.
   Vec3f farthest(const Vec3f& direction) const;
   /// Unit normal of a subject that is as good as flat, a card: on the side of its fronts, or toward `viewer`

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/bench/bench.h"
+#include "vernier/version.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -40,7 +41,7 @@ std::vector<const AcceleratorEntry*> accelerators_named(const std::vector<std::s
 }
 
 nlohmann::ordered_json bench_header(const Program& program) {
-  return {{"vernier", VERNIER_VERSION},
+  return {{"vernier", version()},
           {"command", program.command_line},
           {"date", fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)))},
           {"machine", {{"cpu", cpu_name()}, {"threads", thread_count()}}},

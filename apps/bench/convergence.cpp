@@ -195,7 +195,7 @@ std::vector<Candidate> make_candidates(const ConvergencePlan& plan, const SceneD
   std::vector<Candidate> candidates;
   for (const auto& accelerator : plan.accelerators) {
     const auto start = Clock::now();
-    scenes.push_back(std::make_unique<Scene>(description, Scene::Options{accelerator}));
+    scenes.push_back(std::make_unique<Scene>(description, SceneOptions{accelerator}));
     const double build_seconds = seconds_since(start);
     for (const auto& name : plan.integrators) {
       Candidate& candidate = candidates.emplace_back();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/report/html_page.h"
+#include "vernier/version.h"
 
 #include <fmt/format.h>
 
@@ -175,7 +176,7 @@ std::string HtmlPage::text() const {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"generator\" content=\"vernier {}\">\n<title>{}</title>\n<style>\n{}</style></head>\n"
       "<body><main>\n{}</main>\n",
-      VERNIER_VERSION, title_, web_assets::page_css, body_);
+      version(), title_, web_assets::page_css, body_);
   if (chart_count_ > 0)
     page += fmt::format("<script>{}</script>\n<script>\n{}</script>\n", web_assets::chart_js,
                         web_assets::page_js);

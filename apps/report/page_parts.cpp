@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/report/page_parts.h"
+#include "vernier/version.h"
 
 #include <fmt/format.h>
 
@@ -74,7 +75,7 @@ void add_machine(HtmlPage& page, const nlohmann::ordered_json& machine,
     libraries += fmt::format("{}{} {}", libraries.empty() ? "" : ", ", name, version.get<std::string>());
   page.facts({{"processor", machine["cpu"]},
               {"threads", fmt::format("{}", machine["threads"].get<unsigned>())},
-              {"version", "vernier " VERNIER_VERSION},
+              {"version", fmt::format("vernier {}", version())},
               {"built with", libraries}});
 }
 

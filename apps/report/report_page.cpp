@@ -178,14 +178,6 @@ void add_time_and_rays(HtmlPage& page, const Json& stats) {
   };
   page.bar({ray_part("camera rays", rays["camera"]), ray_part("bounce rays", rays["bounce"]),
             ray_part("shadow rays", rays["shadow"])});
-  if (stats["profile"].is_object()) {
-    std::vector<BarPart> parts;
-    for (const auto& [name, share] : stats["profile"]["shares"].items())
-      parts.push_back({name, share.get<double>(), ""});
-    page.bar(parts);
-    page.paragraph(fmt::format("The last bar is processor time while rendering, sampled {} times.",
-                               stats["profile"]["samples"].get<size_t>()));
-  }
   const Json& accelerator = stats["accelerator"];
   page.facts({{"rays", fmt::format("{}, {} a second", count(rays["total"]), count(rays["per_second"]))},
               {"samples", fmt::format("{}, {} a second", count(stats["picture"]["samples"]),

@@ -3,6 +3,7 @@
 
 #include <mutex>
 
+#include "apps/validation/excuse.h"
 #include "core/base/parallel.h"
 #include "scene/accel/instance.h"
 
@@ -16,25 +17,12 @@ bool is_same(const std::optional<RawHit>& a, const std::optional<RawHit>& b) {
   return a->instance == b->instance && a->primitive == b->primitive;
 }
 
-/// Whether rounding alone may make the two answers differ: one of them lies at a triangle's boundary or at an
-/// end of the ray's interval, or both at the same distance.
 bool is_excused(const Soup& soup, const Ray& ray, const std::optional<RawHit>& a,
                 const std::optional<RawHit>& b) {
-  const auto near_boundary = [&](const std::optional<RawHit>& hit) {
-    return hit && is_near_boundary(ray, soup.corners(hit->instance, hit->primitive));
+  const auto corners = [&](const std::optional<RawHit>& hit) {
+    return hit ? std::optional(soup.corners(hit->instance, hit->primitive)) : std::nullopt;
   };
-  if (near_boundary(a) || near_boundary(b)) return true;
-  const auto exact = [&](const RawHit& hit) {
-    return intersect_exactly(ray, soup.corners(hit.instance, hit.primitive));
-  };
-  const auto at_end = [&](const RawHit& hit) {
-    const ExactHit e = exact(hit);
-    return std::abs(e.t - ray.t_min) <= e.t_bound || std::abs(e.t - ray.t_max) <= e.t_bound;
-  };
-  if ((a && at_end(*a)) || (b && at_end(*b))) return true;
-  if (!a || !b) return false;
-  const ExactHit ea = exact(*a), eb = exact(*b);
-  return std::abs(ea.t - eb.t) <= ea.t_bound + eb.t_bound;
+  return excuse(ray, corners(a), corners(b)) != Excuse::none;
 }
 
 Ray random_ray(const Soup& soup, Dice& dice) {

@@ -7,64 +7,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apps/vernier/build_id.h"
 #include "apps/vernier/flags.h"
-#include "apps/vernier/machine.h"
 #include "core/base/atomic_file.h"
-#include "core/base/fingerprint.h"
+#include "core/base/quantities.h"
+#include "integrators/render/checkpoint.h"
 
 namespace vernier::apps {
-namespace {
-
-/// A name for people, and what tells apart cameras of one name.
-std::string camera_text(const CameraDescription& camera) {
-  std::vector<float> numbers{float(camera.kind == CameraDescription::Kind::perspective), camera.yfov,
-                             camera.aspect, camera.xmag, camera.ymag};
-  const Transform& place = camera.to_world;
-  for (const Vec3f& column : {place.x, place.y, place.z, place.origin})
-    numbers.insert(numbers.end(), {column.x, column.y, column.z});
-  return fmt::format("{} ({:.8})", camera.name, fingerprint(std::as_bytes(std::span(numbers))));
-}
-
-/// What the samples depend on. The program's version is among it, for the same numbers may mean other light
-/// in another one.
-RenderIdentity identity_of(const RenderRequest& request, const RenderReport& report,
-                           const CameraDescription& camera) {
-  const RenderFlags& flags = request.flags;
-  const IntegratorOptions& integrator = flags.integrator_options;
-  const RenderSettings& options = report.options;
-  RenderIdentity identity{{"version", VERNIER_VERSION},
-                          {"scene", report.scene_hash},
-                          {"camera", camera_text(camera)},
-                          {"size", fmt::format("{}x{}", options.width, options.height)},
-                          {"integrator", flags.integrator},
-                          {"max-depth", fmt::format("{}", integrator.max_depth)},
-                          {"ambient", fmt::format("{}", integrator.ambient)},
-                          {"cutoff", fmt::format("{}", integrator.cutoff)},
-                          {"accelerator", report.accelerator},
-                          {"adaptive", options.adaptive ? "on" : "off"},
-                          {"seed", fmt::format("{}", options.seed)}};
-  const auto add = [&](const char* name, const std::string& value) {
-    if (!value.empty()) identity.emplace_back(name, value);
-  };
-  if (options.crop.width > 0) add("crop", crop_text(options.crop));
-  add("show", flags.show);
-  add("variant", flags.import.variant);
-  add("animation", flags.import.animation);
-  if (flags.import.time) add("at", fmt::format("{}", *flags.import.time));
-  const Surroundings& surroundings = report.surroundings;
-  if (surroundings.environment) {
-    const auto& pixels = surroundings.environment->picture->values;
-    add("env", fingerprint(std::as_bytes(std::span(pixels))));
-    add("env-rotate", fmt::format("{}", flags.surroundings.rotate));
-    add("env-scale", fmt::format("{}", flags.surroundings.scale));
-  } else {
-    add("env", surroundings.name);
-  }
-  return identity;
-}
-
-}  // namespace
 
 void add_checkpoint_flags(CLI::App& command, RenderFlags& flags) {
   command.option_defaults()->group("Long renders");
@@ -93,61 +41,28 @@ Checkpointing::Checkpointing(const RenderFlags& flags, NoticeLog& log) : flags_(
              fmt::format("{} is not there yet; rendering from the beginning", flags.resume)});
     return;
   }
-  from_ = read_checkpoint(flags.resume);
-  const RenderResult& so_far = from_.state->so_far;
-  resumed_ = {so_far.samples, so_far.seconds,
-              double(so_far.samples) / (double(so_far.film.width()) * so_far.film.height())};
+  resumes_ = true;
+  require_checkpoint(flags.resume);
 }
 
-RenderHooks Checkpointing::hooks(const RenderRequest& request, const RenderReport& report,
-                                 const CameraDescription& camera) {
-  RenderHooks hooks;
-  if (flags_.checkpoint.empty() && !from_.state) return hooks;
-  identity_ = identity_of(request, report, camera);
-  const std::string build = build_id(), here = platform();
-  if (from_.state) {
-    if (take(from_.identity, "build") != build)
-      log_.add({Notice::Severity::warning,
-                {},
-                fmt::format("{} was written by another build of Vernier; if that one took other samples, the "
-                            "picture will not be the same as if it had never stopped",
-                            flags_.resume)});
-    if (const std::string other = take(from_.identity, "platform"); other != here)
-      log_.add(
-          {Notice::Severity::warning,
-           {},
-           fmt::format("{} was written on another platform ({}; this is {}), whose last bits may differ; "
-                       "the picture may not be the same as if it had never stopped",
-                       flags_.resume, other, here)});
-    require_same_render(flags_.resume, from_.identity, identity_);
-    const RenderSettings& options = report.options;
-    const bool cropped = options.crop.width > 0;
-    if (!from_.state->fits(cropped ? options.crop.width : options.width,
-                           cropped ? options.crop.height : options.height, options.adaptive))
-      throw Error(
-          ErrorKind::input, flags_.resume, {},
-          "is damaged: what it holds is not of the size that it says; use another checkpoint or render "
-          "without --resume");
-    hooks.from = std::move(from_.state);
+void Checkpointing::attach(RenderSession& session) {
+  if (resumes_) {
+    log_.add(session.load(flags_.resume));
+    resumed_ = session.status();
     log_.add({Notice::Severity::info,
               {},
               fmt::format("going on from {}: {:.4g} samples a pixel and {} are done", flags_.resume,
                           resumed_->samples_per_pixel, format_seconds(resumed_->seconds))});
   }
-  identity_.emplace_back("build", build);
-  identity_.emplace_back("platform", here);
-  if (!flags_.checkpoint.empty()) {
-    hooks.save = [this](const RenderState& state) { write(state); };
-    hooks.save_interval = parse_seconds(flags_.checkpoint_every);
-  }
-  return hooks;
+  if (!flags_.checkpoint.empty())
+    session.on_checkpoint([this, &session] { write(session); }, parse_seconds(flags_.checkpoint_every));
 }
 
-void Checkpointing::write(const RenderState& state) {
+void Checkpointing::write(const RenderSession& session) {
   const auto start = std::chrono::steady_clock::now();
   failure_.clear();
   try {
-    write_checkpoint(flags_.checkpoint, identity_, state);
+    session.save(flags_.checkpoint);
     ++written_;
   } catch (const Error& error) {
     failure_ = error.what();

@@ -6,9 +6,8 @@
 #include <string>
 
 #include "apps/vernier/notice_log.h"
-#include "apps/vernier/render_options.h"
-#include "apps/vernier/render_report.h"
-#include "integrators/render/checkpoint.h"
+#include "apps/vernier/render_flags.h"
+#include "vernier/session.h"
 
 namespace vernier::apps {
 
@@ -18,13 +17,12 @@ void add_checkpoint_flags(CLI::App& command, RenderFlags& flags);
 /// What they ask of one render.
 class Checkpointing {
  public:
-  /// Reads the checkpoint to resume from and sees that one can be written. Throws Error.
+  /// Sees that a checkpoint can be written, and that there is one to resume from. Throws Error.
   Checkpointing(const RenderFlags& flags, NoticeLog& log);
 
-  /// Hooks that go on from the checkpoint and write new ones. `report` and `camera` say what is being
-  /// rendered. This object must outlive them. Throws Error(input) when the checkpoint is of another render.
-  RenderHooks hooks(const RenderRequest& request, const RenderReport& report,
-                    const CameraDescription& camera);
+  /// Lets `session` go on from the checkpoint and write new ones. Throws Error(input) when the checkpoint is
+  /// of another render. This object must outlive the session's run.
+  void attach(RenderSession& session);
 
   /// Adds what docs/stats.md says of both.
   void add_to(nlohmann::ordered_json& stats) const;
@@ -34,21 +32,15 @@ class Checkpointing {
   void require_written() const;
 
  private:
-  void write(const RenderState& state);
+  void write(const RenderSession& session);
 
   const RenderFlags& flags_;
   NoticeLog& log_;
-  Checkpoint from_;
-  RenderIdentity identity_;
+  bool resumes_ = false;
   std::string failure_;  ///< of the last attempt; empty: it went well
   double seconds_ = 0;   ///< spent writing
   size_t written_ = 0;
-  /// What was there to begin with.
-  struct Resumed {
-    uint64_t samples = 0;
-    double seconds = 0, samples_per_pixel = 0;
-  };
-  std::optional<Resumed> resumed_;
+  std::optional<RenderStatus> resumed_;  ///< what was there to begin with
 };
 
 }  // namespace vernier::apps

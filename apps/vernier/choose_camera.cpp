@@ -9,7 +9,6 @@
 
 #include "core/base/names.h"
 #include "core/base/quantities.h"
-#include "core/math/frame.h"
 #include "scene/framing.h"
 #include "scene/subject.h"
 #include "vernier/error.h"
@@ -18,10 +17,6 @@ namespace vernier::apps {
 namespace {
 
 constexpr float default_aspect = 16.0f / 9;
-constexpr float default_margin = 0.08f;
-constexpr float default_yfov = 40 * pi / 180;
-/// From the front right and a little above, as product pictures are taken; degrees.
-constexpr float default_azimuth = 30, default_elevation = 15;
 
 std::optional<size_t> parse_index(const std::string& text) {
   size_t index = 0;
@@ -38,37 +33,6 @@ std::string label(std::span<const CameraDescription> cameras, size_t index) {
 Vec3f to_vector(const std::string& text) {
   const auto [x, y, z] = parse_point(text);
   return {x, y, z};
-}
-
-/// Turns `camera` so that it looks from `back` with `up` upward in its picture as far as may be.
-void turn(CameraDescription& camera, const Vec3f& back, const Vec3f& up) {
-  // About back, the x axis of this frame lies toward up.
-  const Frame frame = Frame::from_normal_tangent(back, up);
-  camera.to_world.x = -frame.y;
-  camera.to_world.y = frame.x;
-  camera.to_world.z = back;
-}
-
-void roll(CameraDescription& camera, float degrees) {
-  if (degrees == 0) return;
-  const float angle = degrees * pi / 180;
-  Transform& place = camera.to_world;
-  const Vec3f back = normalize(place.z), right = normalize(cross(place.y, back)), up = cross(back, right);
-  place.x = right * std::cos(angle) - up * std::sin(angle);
-  place.y = up * std::cos(angle) + right * std::sin(angle);
-  place.z = back;
-}
-
-/// From the scene's centre to the viewer.
-Vec3f orbit_direction(float azimuth_degrees, float elevation_degrees) {
-  const float azimuth = azimuth_degrees * pi / 180, elevation = elevation_degrees * pi / 180;
-  return {std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
-          std::cos(azimuth) * std::cos(elevation)};
-}
-
-/// Straight up and down, the front of the scene stays at the bottom of the picture and at the top.
-Vec3f orbit_up(float azimuth_degrees, float elevation_degrees) {
-  return orbit_direction(azimuth_degrees, elevation_degrees + 90);
 }
 
 void look_from(CameraDescription& camera, const CameraFlags& flags, const Bounds& seen) {
@@ -123,26 +87,16 @@ void adjust_lens(CameraDescription& camera, const CameraFlags& flags, const Boun
   if (flags.ortho || flags.zoom != 1) camera.xmag = camera.ymag * aspect;
 }
 
-/// Where the subject fits the picture, whatever its distance and size.
-CameraDescription fitted_camera(const CameraFlags& flags, const Subject& subject, const Bounds& seen,
-                                float aspect) {
-  CameraDescription camera;
-  camera.name = "fitted";
-  camera.yfov = flags.fov ? *flags.fov * pi / 180 : default_yfov;
-  if (flags.ortho) camera.kind = CameraDescription::Kind::orthographic;
-  const float azimuth = flags.azimuth.value_or(default_azimuth);
-  const float elevation = flags.elevation.value_or(default_elevation);
-  turn(camera, orbit_direction(azimuth, elevation), orbit_up(azimuth, elevation));
-  if (!flags.azimuth && !flags.elevation && !subject.empty())
-    if (const auto normal = subject.flat_normal(camera.to_world.z))
-      turn(camera, *normal, std::abs(normal->y) < 0.99f ? Vec3f(0, 1, 0) : Vec3f(0, 0, -normal->y));
-  roll(camera, flags.roll);
-  const FarthestPoint farthest = [&](const Vec3f& direction) {
-    if (!subject.empty()) return subject.farthest(direction);
-    return Vec3f(direction.x > 0 ? seen.upper.x : seen.lower.x, direction.y > 0 ? seen.upper.y : seen.lower.y,
-                 direction.z > 0 ? seen.upper.z : seen.lower.z);
-  };
-  return fit_camera(camera, farthest, aspect, flags.fit.empty() ? default_margin : parse_margin(flags.fit));
+FittedView view_of(const CameraFlags& flags) {
+  const auto radians = [](float degrees) { return degrees * pi / 180; };
+  FittedView view;
+  if (flags.azimuth) view.azimuth = radians(*flags.azimuth);
+  if (flags.elevation) view.elevation = radians(*flags.elevation);
+  view.roll = radians(flags.roll);
+  if (flags.fov) view.yfov = radians(*flags.fov);
+  view.orthographic = flags.ortho;
+  if (!flags.fit.empty()) view.margin = parse_margin(flags.fit);
+  return view;
 }
 
 void note_fitting(const CameraFlags& flags, const Subject& subject, NoticeLog& log) {
@@ -197,22 +151,18 @@ std::optional<CameraDescription> choose_camera(std::span<const CameraDescription
 CameraDescription place_camera(const std::optional<CameraDescription>& chosen, const CameraFlags& flags,
                                const SceneGeometry& geometry, float aspect, NoticeLog& log) {
   const Subject subject(geometry);
-  Bounds seen = subject.bounds();
-  if (seen.empty()) {
-    seen.add(Vec3f(-1));
-    seen.add(Vec3f(1));
-  }
+  const Bounds seen = subject.bounds_to_see();
   CameraDescription camera;
   if (chosen) {
     camera = *chosen;
-    roll(camera, flags.roll);
+    roll(camera, flags.roll * pi / 180);
   } else if (!flags.look_from.empty()) {
-    camera.yfov = default_yfov;
+    camera.yfov = FittedView{}.yfov;
     look_from(camera, flags, seen);
-    roll(camera, flags.roll);
+    roll(camera, flags.roll * pi / 180);
   } else {
     note_fitting(flags, subject, log);
-    camera = fitted_camera(flags, subject, seen, aspect > 0 ? aspect : default_aspect);
+    camera = fitted_camera(subject, aspect > 0 ? aspect : default_aspect, view_of(flags));
   }
   adjust_lens(camera, flags, seen);
   return camera;

@@ -35,6 +35,7 @@ struct Program {
 // A misuse found by the callback or by `run` is Error(usage).
 void register_render(Program& program);
 void register_info(Program& program);
+void register_verify(Program& program);
 void register_compare(Program& program);
 void register_denoise(Program& program);
 void register_merge(Program& program);

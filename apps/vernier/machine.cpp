@@ -2,7 +2,6 @@
 #include "apps/vernier/machine.h"
 
 #include <fmt/format.h>
-#include <gnu/libc-version.h>
 #include <sys/resource.h>
 
 #include <fstream>
@@ -37,21 +36,6 @@ uint64_t peak_memory_bytes() { return static_cast<uint64_t>(usage_of_self().ru_m
 double cpu_seconds() {
   const rusage usage = usage_of_self();
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-std::string platform() {
-  std::string features;
-  // __builtin_cpu_supports() wants literals. The features are those that glibc has variants for.
-  const auto add = [&](bool has, const char* name) {
-    if (has) features += fmt::format("{}{}", features.empty() ? "" : " ", name);
-  };
-  add(__builtin_cpu_supports("avx2"), "avx2");
-  add(__builtin_cpu_supports("avx512f"), "avx512f");
-  add(__builtin_cpu_supports("fma"), "fma");
-  add(__builtin_cpu_supports("fma4"), "fma4");
-  add(__builtin_cpu_supports("sse4.1"), "sse4.1");
-  return fmt::format("{}, glibc {}, {}", features.empty() ? "baseline" : features, gnu_get_libc_version(),
-                     VERNIER_COMPILER);
 }
 
 nlohmann::ordered_json build_versions() {

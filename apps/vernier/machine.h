@@ -16,10 +16,6 @@ uint64_t peak_memory_bytes();
 /// Processor time used by this process so far, all threads.
 double cpu_seconds();
 
-/// What the last bits of results depend on beside the program itself: the C library chooses its sines and
-/// exponentials by the processor's features. "avx2 avx512f fma, glibc 2.36, GNU 12.2.0".
-std::string platform();
-
 /// Names and versions of what this program was built with.
 nlohmann::ordered_json build_versions();
 

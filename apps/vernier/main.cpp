@@ -11,13 +11,15 @@
 #include "apps/vernier/stop_signals.h"
 #include "core/base/names.h"
 #include "vernier/error.h"
+#include "vernier/version.h"
 
 namespace vernier::apps {
 namespace {
 
 /// Every subcommand, in the order of `vernier --help`.
 constexpr void (*subcommands[])(Program&) = {
-    register_render, register_info, register_compare, register_denoise, register_merge, register_bench,
+    register_render,  register_info,  register_verify, register_compare,
+    register_denoise, register_merge, register_bench,
 };
 
 ExitCode exit_code(ErrorKind kind) {
@@ -107,7 +109,7 @@ ExitCode run_program(int argc, char** argv) {
   program.app.footer(
       "Exit codes: 0 done, 1 comparison failed, 2 usage, 3 bad scene or file, 4 out of memory,\n"
       "5 stopped early (image written).");
-  program.app.set_version_flag("--version", "vernier " VERNIER_VERSION);
+  program.app.set_version_flag("--version", fmt::format("vernier {}", version()));
   program.app.require_subcommand(1);
   for (const auto add : subcommands) add(program);
   try {

@@ -93,18 +93,6 @@ std::optional<Denoised> denoise_if_asked(const RenderRequest& request, LayeredIm
   return denoised;
 }
 
-/// `picture` has the color first and then the layers asked for, which only .exr files get.
-void write_picture(const std::string& path, const RenderRequest& request, const LayeredImage& picture,
-                   Metadata metadata) {
-  if (!is_display_file(path)) {
-    write_exr(path, picture.image, picture.channel_names, metadata);
-    return;
-  }
-  metadata["vernier:exposure"] = fmt::format("{}", request.display.exposure);
-  metadata["vernier:view"] = request.display.view;
-  write_image8(path, to_display(picture.rgb(), request.display), metadata);
-}
-
 /// The scene to render, and what the report says of it.
 SceneDescription load_scene(const RenderRequest& request, RenderReport& report, NoticeLog& log) {
   const RenderFlags& flags = request.flags;
@@ -113,26 +101,50 @@ SceneDescription load_scene(const RenderRequest& request, RenderReport& report, 
   report.scene_file = flags.scene;
   report.scene_hash = description.hash;
   report.counts = count(description);
-  report.accelerator = flags.accelerator.empty() ? accelerators().front().name : flags.accelerator;
   return description;
 }
 
-/// Renders, and says on the way how far it is. With --report the processor is watched.
-RenderResult trace(const Scene& scene, const Camera& camera, const RenderRequest& request,
-                   RenderReport& report, RenderHooks hooks) {
+/// Renders, and says on the way how far it is.
+void run(RenderSession& session, const RenderRequest& request) {
   const StopSignals signals;
-  ProgressReporter progress(request.progress, report.options);
-  std::optional<Profiler> profiler;
-  if (!request.flags.report.empty()) profiler.emplace();
-  hooks.observe = [&](const RenderProgress& state) { progress.update(state); };
-  RenderResult result =
-      render(scene, camera, *request.integrator, report.options, signals.stop(), std::move(hooks));
-  if (profiler) {
-    profiler->stop();
-    report.profile = profiler->parts();
-    report.profile_samples = profiler->samples();
-  }
-  return result;
+  ProgressReporter progress(request.progress, session.settings());
+  session.on_progress([&](const RenderProgress& state) { progress.update(state); });
+  session.run(signals.stop());
+}
+
+/// The scene as it is rendered, with its camera and size in `settings`.
+std::shared_ptr<const Scene> prepare(const RenderRequest& request, RenderSettings& settings,
+                                     RenderReport& report, NoticeLog& log) {
+  const RenderFlags& flags = request.flags;
+  Stopwatch watch;
+  SceneDescription description = load_scene(request, report, log);
+  log.add(description.notices);
+  const auto chosen = choose_camera(description.cameras, flags.camera, log);
+  report.load_seconds = watch.lap();
+  const std::shared_ptr<Scene> scene = build_scene(std::move(description), {flags.accelerator});
+  report.accelerator = scene->accelerator_name();
+  report.accelerator_stats = scene->accelerator().stats();
+  report.build_seconds = watch.lap();
+
+  settings.camera = place_camera(chosen, flags.camera, scene->geometry(), asked_aspect(flags.size), log);
+  report.camera = settings.camera.name;
+  fill_in_size(settings, settings.camera);
+  check_picture_size(settings, memory_use(request));
+  if (shows_light(flags))
+    report.surroundings = surround(*scene, request.surroundings, settings.camera, settings, log);
+  log.add(scene->notices());
+  if (flags.import.strict) refuse_warnings(flags.scene, scene->notices());
+  return scene;
+}
+
+void warn_of_result(const RenderResult& result, const Scene& scene, const RenderFlags& flags,
+                    const RenderReport& report, NoticeLog& log) {
+  warn_of_bad_samples(result, flags, log);
+  warn_of_missing_light(result, flags.integrator_options.max_depth, log);
+  if (!shows_light(flags)) return;
+  const RenderSettings& settings = report.settings;
+  const Camera camera(settings.camera, settings.width, settings.height);
+  warn_if_black(covered_luminance(result.film, scene, camera, settings), flags, report, log);
 }
 
 ExitCode run_render(const RenderFlags& flags, const std::string& command_line) {
@@ -145,41 +157,26 @@ ExitCode run_render(const RenderFlags& flags, const std::string& command_line) {
   RenderReport report;
   report.command_line = command_line;
   report.threads = thread_count();
-  report.options = request.options;
-  SceneDescription description = load_scene(request, report, log);
-  log.add(description.notices);
-  const auto chosen = choose_camera(description.cameras, flags.camera, log);
-  report.load_seconds = watch.lap();
-  Scene scene(std::move(description), {flags.accelerator});
-  report.accelerator_stats = scene.accelerator().stats();
-  report.build_seconds = watch.lap();
-
-  const CameraDescription view =
-      place_camera(chosen, flags.camera, scene.geometry(), asked_aspect(flags.size), log);
-  report.camera = view.name;
-  fill_in_size(report.options, view);
-  check_picture_size(report.options, memory_use(request));
-  if (shows_light(flags))
-    report.surroundings = surround(scene, request.surroundings, view, report.options, log);
-  log.add(scene.notices());
-  if (flags.import.strict) refuse_warnings(flags.scene, scene.notices());
-  const Camera camera(view, report.options.width, report.options.height);
-  RenderHooks hooks = checkpointing.hooks(request, report, view);
+  const double check_seconds = watch.lap();
+  RenderSettings settings = request.settings;
+  const std::shared_ptr<const Scene> scene = prepare(request, settings, report, log);
+  report.load_seconds += check_seconds;
+  RenderSession session(scene, std::move(settings));
+  report.settings = session.settings();
+  checkpointing.attach(session);
   if (flags.verbose) fmt::print(stderr, "{}", scene_lines(report));
 
-  const RenderResult result = trace(scene, camera, request, report, std::move(hooks));
-  warn_of_bad_samples(result, flags, log);
-  warn_of_missing_light(result, flags.integrator_options.max_depth, log);
-  if (shows_light(flags))
-    warn_if_black(covered_luminance(result.film, scene, camera, report.options), flags, report, log);
+  run(session, request);
+  const RenderResult& result = session.result();
+  warn_of_result(result, *scene, flags, report, log);
 
   watch.lap();
-  LayeredImage picture = with_layers(result.film, request.layers, scene, camera, report.options);
+  LayeredImage picture = session.picture(request.layer_list);
   Metadata metadata = image_metadata(report, flags, result);
   const auto denoised = denoise_if_asked(request, picture, metadata);
   Outputs outputs;
   for (const auto& path : flags.outputs)
-    if (outputs.attempt([&] { write_picture(path, request, picture, metadata); }))
+    if (outputs.attempt([&] { write_picture(path, picture, metadata, request.display); }))
       report.files.push_back(path);
   report.output_seconds = watch.lap();
   auto stats = stats_json(report, flags, result, log);

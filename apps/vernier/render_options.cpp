@@ -21,13 +21,13 @@ namespace vernier::apps {
 namespace {
 
 /// Only OpenEXR holds more than a picture's colour. Denoising brings the layers that it uses.
-std::vector<Layer> choose_layers(const RenderFlags& flags) {
+std::string choose_layers(const RenderFlags& flags) {
   if (!flags.layers.empty() && std::all_of(flags.outputs.begin(), flags.outputs.end(), is_display_file))
     throw Error(ErrorKind::usage, {}, "--aov",
                 "only an .exr can hold layers; add -o FILE.exr, which may be given beside other outputs");
   std::string list = flags.layers;
   if (!flags.denoise.empty()) list += (list.empty() ? "" : ",") + std::string(layers_for_denoising);
-  return find_layers(list);
+  return list;
 }
 
 ProgressMode parse_progress(const RenderFlags& flags) {
@@ -44,21 +44,15 @@ ProgressMode parse_progress(const RenderFlags& flags) {
   return flags.quiet && mode == ProgressMode::automatic ? ProgressMode::none : mode;
 }
 
-std::unique_ptr<Integrator> make_integrator(const RenderFlags& flags) {
-  const IntegratorEntry& entry = find_by_name(integrators(), "integrator", flags.integrator);
-  IntegratorOptions options = flags.integrator_options;
-  if (!flags.show.empty()) {
-    if (entry.name != "raycast") throw Error(ErrorKind::usage, "--show needs --integrator raycast");
-    std::vector<std::string> names(raycast_shows().begin(), raycast_shows().end());
-    if (std::find(names.begin(), names.end(), flags.show) == names.end())
-      throw_unknown_name("--show", flags.show, names);
-    options.show = flags.show;
-  }
-  return entry.make(options);
-}
-
-RenderSettings make_options(const RenderFlags& flags) {
+RenderSettings make_settings(const RenderFlags& flags) {
   RenderSettings options;
+  options.integrator = flags.integrator;
+  options.integrator_options = flags.integrator_options;
+  if (!flags.show.empty()) {
+    if (flags.integrator != "raycast") throw Error(ErrorKind::usage, "--show needs --integrator raycast");
+    options.integrator_options.show = flags.show;
+  }
+  make_integrator(options.integrator, options.integrator_options);  // or it throws
   options.seed = flags.seed;
   if (!flags.time.empty()) options.limits.seconds = parse_seconds(flags.time);
   if (!flags.error.empty()) options.limits.error = parse_fraction(flags.error);
@@ -113,7 +107,7 @@ void require_separate_outputs(const RenderFlags& flags) {
 MemoryUse memory_use(const RenderRequest& request) {
   const RenderFlags& flags = request.flags;
   MemoryUse use;
-  use.adaptive = request.options.adaptive;
+  use.adaptive = request.settings.adaptive;
   for (const Layer& layer : request.layers) {
     use.layer_channels += layer.channel_count();
     use.error_layers = use.error_layers || layer.need == LayerNeed::error;
@@ -147,13 +141,13 @@ RenderRequest check_render_flags(const RenderFlags& flags) {
     throw Error(ErrorKind::usage, "missing -o FILE (.exr, .png, .jpg); see vernier render --help");
   RenderRequest request;
   request.flags = flags;
-  request.integrator = make_integrator(flags);
   if (!flags.accelerator.empty()) find_by_name(accelerators(), "accelerator", flags.accelerator);
-  request.options = make_options(flags);
+  request.settings = make_settings(flags);
   request.progress = parse_progress(flags);
-  request.layers = choose_layers(flags);
+  request.layer_list = choose_layers(flags);
+  request.layers = find_layers(request.layer_list);
   if (!flags.denoise.empty()) request.denoiser = &find_denoiser(flags.denoise);
-  if (request.options.width > 0) check_picture_size(request.options, memory_use(request));
+  if (request.settings.width > 0) check_picture_size(request.settings, memory_use(request));
   request.display = choose_display(flags);
   require_separate_outputs(flags);
   for (const auto& path : flags.outputs) check_writable_image(path);
@@ -161,10 +155,6 @@ RenderRequest check_render_flags(const RenderFlags& flags) {
     if (!path.empty()) check_writable(path);
   request.surroundings = read_surroundings(flags.surroundings);
   return request;
-}
-
-bool is_display_file(const std::string& path) {
-  return !equal_ignoring_case(std::filesystem::path(path).extension().string(), ".exr");
 }
 
 }  // namespace vernier::apps

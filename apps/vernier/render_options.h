@@ -12,7 +12,7 @@
 #include "core/display/display.h"
 #include "integrators/integrator.h"
 #include "integrators/render/layers.h"
-#include "integrators/render/render.h"
+#include "integrators/render/picture.h"
 #include "vernier/scene.h"
 
 namespace vernier::apps {
@@ -22,9 +22,9 @@ enum class ProgressMode { automatic, bar, lines, json, none };
 /// The flags after everything that can be checked without reading a scene has been checked.
 struct RenderRequest {
   RenderFlags flags;
-  std::unique_ptr<Integrator> integrator;
-  RenderSettings options;  ///< width 0: not given
+  RenderSettings settings;  ///< width 0: not given; the camera is not known yet
   ProgressMode progress = ProgressMode::automatic;
+  std::string layer_list;  ///< as --aov takes it, with what denoising needs
   std::vector<Layer> layers;
   const Denoiser* denoiser = nullptr;  ///< null: none
   DisplayOptions display;
@@ -39,8 +39,5 @@ MemoryUse memory_use(const RenderRequest& request);
 /// Whether the crop lies in the picture, and what a render of it takes in memory. Throws Error(usage) or
 /// Error(memory).
 void check_picture_size(const RenderSettings& options, const MemoryUse& use);
-
-/// Whether a file is written as display values (PNG, JPEG) rather than scene-linear ones (EXR). By extension.
-bool is_display_file(const std::string& path);
 
 }  // namespace vernier::apps

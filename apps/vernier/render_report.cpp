@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/vernier/render_report.h"
+#include "core/base/build.h"
+#include "vernier/version.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -45,8 +47,8 @@ Json asked_json(const RenderSettings& options) {
 }
 
 Json picture_json(const RenderReport& report, const RenderFlags& flags, const RenderResult& result) {
-  Json picture = {{"width", report.options.width},
-                  {"height", report.options.height},
+  Json picture = {{"width", report.settings.width},
+                  {"height", report.settings.height},
                   {"integrator", flags.integrator},
                   {"camera", report.camera},
                   {"surroundings", report.surroundings.name},
@@ -54,10 +56,10 @@ Json picture_json(const RenderReport& report, const RenderFlags& flags, const Re
                   {"max_depth", flags.integrator_options.max_depth},
                   {"samples", result.samples},
                   {"samples_per_pixel", samples_per_pixel(result)},
-                  {"asked", asked_json(report.options)},
+                  {"asked", asked_json(report.settings)},
                   {"stopped_by", name(result.reason)},
                   {"files", report.files}};
-  if (report.options.crop.width > 0) picture["crop"] = crop_text(report.options.crop);
+  if (report.settings.crop.width > 0) picture["crop"] = crop_text(report.settings.crop);
   return picture;
 }
 
@@ -85,13 +87,6 @@ Json rays_json(const RenderResult& result) {
           {"samples_per_second", rate(result.samples, result.seconds)}};
 }
 
-Json profile_json(const RenderReport& report) {
-  if (report.profile.empty()) return nullptr;
-  Json shares = Json::object();
-  for (const ProfilePart& part : report.profile) shares[part.name] = part.share;
-  return {{"samples", report.profile_samples}, {"shares", shares}};
-}
-
 Json bad_samples_json(const RenderResult& result) {
   Json examples = Json::array();
   for (const BadSample& sample : result.bad_sample_examples)
@@ -102,7 +97,7 @@ Json bad_samples_json(const RenderResult& result) {
 /// What was asked for and not reached, if anything.
 std::string shortfall(const RenderReport& report, const RenderResult& result) {
   if (result.reason == StopReason::interrupted) return "; interrupted";
-  const double asked = report.options.limits.error;
+  const double asked = report.settings.limits.error;
   if (asked == 0) return "";
   if (exceeds(result.missing, asked))
     return fmt::format("; the error of {:.3g} % is not reached, for more than that is missing", 100 * asked);
@@ -114,10 +109,6 @@ std::string shortfall(const RenderReport& report, const RenderResult& result) {
 
 }  // namespace
 
-double samples_per_pixel(const RenderResult& result) {
-  return double(result.samples) / (double(result.film.width()) * result.film.height());
-}
-
 std::string error_text(const ErrorEstimate& error) {
   if (!std::isfinite(error.rel_rmse)) return "";
   std::string text = fmt::format(", error {:.3g} % ({:.3g} to {:.3g} %)", 100 * error.rel_rmse,
@@ -125,24 +116,6 @@ std::string error_text(const ErrorEstimate& error) {
   if (error.unreliable >= 0.001)
     text += fmt::format(", {:.1f} % of pixels not to be trusted", 100 * error.unreliable);
   return text;
-}
-
-std::string crop_text(const Crop& crop) {
-  return fmt::format("{}x{}+{}+{}", crop.width, crop.height, crop.x, crop.y);
-}
-
-Metadata result_metadata(const RenderResult& result) {
-  Metadata metadata = {{"Software", "vernier " VERNIER_VERSION},
-                       {"vernier:samples", fmt::format("{}", result.samples)},
-                       {"vernier:samplesPerPixel", fmt::format("{}", samples_per_pixel(result))}};
-  if (std::isfinite(result.error.rel_rmse)) {
-    metadata["vernier:relRmse"] = fmt::format("{:.6g}", result.error.rel_rmse);
-    metadata["vernier:relRmse95"] = fmt::format("{:.6g} {:.6g}", result.error.low, result.error.high);
-    metadata["vernier:unreliablePixels"] = fmt::format("{:.6g}", result.error.unreliable);
-  }
-  metadata["vernier:missingBentLight"] = fmt::format("{:.6g}", result.missing.bent.share);
-  metadata["vernier:missingBeyondDepth"] = fmt::format("{:.6g}", result.missing.depth.share);
-  return metadata;
 }
 
 Metadata image_metadata(const RenderReport& report, const RenderFlags& flags, const RenderResult& result) {
@@ -157,16 +130,16 @@ Metadata image_metadata(const RenderReport& report, const RenderFlags& flags, co
       {"vernier:platform", platform()},
       {"vernier:seed", fmt::format("{}", flags.seed)},
       {"vernier:stoppedBy", std::string(name(result.reason))},
-      {"vernier:size", fmt::format("{}x{}", report.options.width, report.options.height)},
+      {"vernier:size", fmt::format("{}x{}", report.settings.width, report.settings.height)},
   };
   metadata.merge(result_metadata(result));
-  if (report.options.crop.width > 0) metadata["vernier:crop"] = crop_text(report.options.crop);
+  if (report.settings.crop.width > 0) metadata["vernier:crop"] = crop_text(report.settings.crop);
   return metadata;
 }
 
 Json stats_json(const RenderReport& report, const RenderFlags& flags, const RenderResult& result,
                 const NoticeLog& log) {
-  return {{"vernier", VERNIER_VERSION},
+  return {{"vernier", version()},
           {"command", report.command_line},
           {"scene",
            {{"file", report.scene_file}, {"hash", report.scene_hash}, {"counts", to_json(report.counts)}}},
@@ -178,7 +151,6 @@ Json stats_json(const RenderReport& report, const RenderFlags& flags, const Rend
             {"output", report.output_seconds},
             {"cpu", cpu_seconds()}}},
           {"rays", rays_json(result)},
-          {"profile", profile_json(report)},
           {"error", error_json(result.error)},
           {"missing", missing_json(result.missing)},
           {"convergence", convergence_json(result)},
@@ -205,7 +177,7 @@ std::string scene_lines(const RenderReport& report) {
                      format_bytes(double(report.accelerator_stats.bytes)),
                      format_seconds(report.accelerator_stats.build_seconds)) +
          fmt::format("rendering {}x{} on {} threads, {} of memory in use at most so far\n",
-                     report.options.width, report.options.height, report.threads,
+                     report.settings.width, report.settings.height, report.threads,
                      format_bytes(double(peak_memory_bytes())));
 }
 

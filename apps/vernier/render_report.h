@@ -5,11 +5,11 @@
 #include <string>
 
 #include "apps/vernier/notice_log.h"
-#include "apps/vernier/profile.h"
 #include "apps/vernier/render_options.h"
 #include "apps/vernier/scene_summary.h"
 #include "core/image/image_io.h"
-#include "integrators/render/render.h"
+#include "integrators/render/picture.h"
+#include "integrators/render/settings_identity.h"
 #include "scene/accel/accelerator.h"
 
 namespace vernier::apps {
@@ -21,30 +21,19 @@ struct RenderReport {
   Surroundings surroundings{"none", nullptr};
   SceneCounts counts;
   AcceleratorStats accelerator_stats;
-  RenderSettings options;
+  RenderSettings settings;
   unsigned threads = 0;
-  std::vector<std::string> files;    ///< pictures that have been written
-  double load_seconds = 0;           ///< reading the scene and the environment
-  double build_seconds = 0;          ///< from the description to a scene that answers rays
-  double output_seconds = 0;         ///< display transform, encoding, writing
-  std::vector<ProfilePart> profile;  ///< empty: not sampled
-  size_t profile_samples = 0;
+  std::vector<std::string> files;  ///< pictures that have been written
+  double load_seconds = 0;         ///< reading the scene and the environment
+  double build_seconds = 0;        ///< from the description to a scene that answers rays
+  double output_seconds = 0;       ///< display transform, encoding, writing
 };
-
-/// "640x360+10+20", as --crop takes it.
-std::string crop_text(const Crop& crop);
 
 /// Image header entries that say how the picture came about.
 Metadata image_metadata(const RenderReport& report, const RenderFlags& flags, const RenderResult& result);
 
-/// Those of them that say what was sampled, and how wrong it is.
-Metadata result_metadata(const RenderResult& result);
-
 /// ", error 1.02 % (1.01 to 1.03 %)"; empty while it is not known.
 std::string error_text(const ErrorEstimate& error);
-
-/// Samples a pixel, on average.
-double samples_per_pixel(const RenderResult& result);
 
 /// The content of the --stats file; docs/stats.md documents every field.
 nlohmann::ordered_json stats_json(const RenderReport& report, const RenderFlags& flags,

@@ -13,9 +13,6 @@
 
 namespace vernier {
 
-/// Text and numbers stored in an image file's header, by attribute name.
-using Metadata = std::map<std::string, std::string>;
-
 /// Caps that an image header must satisfy before anything is decoded. A picture of more than 2^24 pixels
 /// whose file has under a 4096th as many bytes as values is refused too, so that a small hostile file cannot
 /// ask for gigabytes.
@@ -28,27 +25,6 @@ struct ImageLimits {
 /// named R, G, B where there are such, else the first three, else grey repeated; alpha is dropped. Outside
 /// OpenEXR's data window the picture is black. Throws Error(input) naming the file.
 Image read_image(const std::string& path, const ImageLimits& limits = {});
-
-/// All channels of a file and the texts in its header.
-struct LayeredImage {
-  Image image;
-  std::vector<std::string> channel_names;  ///< as many as image.channels
-  Metadata metadata;
-  bool linear = false;  ///< the file stores floating-point numbers, not display values in [0, 1]
-
-  /// What read_image would return.
-  Image rgb() const;
-  /// The channels NAME.R, NAME.G, NAME.B or NAME.X, NAME.Y, NAME.Z; empty when one is missing.
-  std::optional<Image> layer(const std::string& name) const;
-  /// The channel NAME as a picture of one channel; empty when it is missing.
-  std::optional<Image> single(const std::string& name) const;
-  /// Adds the channels of a picture of the same size, which get these names.
-  void append(const Image& more, const std::vector<std::string>& names);
-
- private:
-  int channel(const std::string& name) const;
-  Image select(const std::array<int, 3>& chosen) const;
-};
 
 /// As read_image, with every channel of the file's first part.
 LayeredImage read_layers(const std::string& path, const ImageLimits& limits = {});

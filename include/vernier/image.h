@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "vernier/export.h"
 #include "vernier/math.h"
 
 namespace vernier {
@@ -41,5 +46,29 @@ inline float srgb_to_linear(float encoded) {
 inline float linear_to_srgb(float linear) {
   return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
 }
+
+/// Text and numbers stored in an image file's header, by attribute name.
+using Metadata = std::map<std::string, std::string>;
+
+/// All channels of a file and the texts in its header.
+struct VERNIER_API LayeredImage {
+  Image image;
+  std::vector<std::string> channel_names;  ///< as many as image.channels
+  Metadata metadata;
+  bool linear = false;  ///< the file stores floating-point numbers, not display values in [0, 1]
+
+  /// R, G and B, else the first three channels, else grey repeated.
+  Image rgb() const;
+  /// The channels NAME.R, NAME.G, NAME.B or NAME.X, NAME.Y, NAME.Z; empty when one is missing.
+  std::optional<Image> layer(const std::string& name) const;
+  /// The channel NAME as a picture of one channel; empty when it is missing.
+  std::optional<Image> single(const std::string& name) const;
+  /// Adds the channels of a picture of the same size, which get these names.
+  void append(const Image& more, const std::vector<std::string>& names);
+
+ private:
+  int channel(const std::string& name) const;
+  Image select(const std::array<int, 3>& chosen) const;
+};
 
 }  // namespace vernier

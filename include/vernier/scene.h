@@ -83,7 +83,11 @@ struct FeatureUse {
 
 struct SceneDescription {
   std::string source;  ///< file it came from
-  std::string hash;    ///< of every byte read: scene file, buffers, images
+  /// Tells it from other scenes; of a file, of every byte read: scene file, buffers, images. Whoever builds
+  /// one from arrays may call it what they like; nothing goes on from a checkpoint of a scene without.
+  std::string hash;
+  /// What was chosen of what the file offers, as names and values: a variant, an animation, its time.
+  std::vector<std::pair<std::string, std::string>> choices;
   std::vector<MeshDescription> meshes;
   std::vector<MaterialDescription> materials;
   std::vector<Texture> textures;
@@ -115,5 +119,37 @@ VERNIER_API SceneDescription import_scene(const std::string& path, const ImportO
 /// Throws Error(input) for the first warning about the scene file: what `strict` means to notices that come
 /// up only when the scene is built.
 VERNIER_API void refuse_warnings(const std::string& path, std::span<const Notice> notices);
+
+class Scene;
+
+struct SceneOptions {
+  std::string accelerator;  ///< empty: the default
+};
+
+/// Builds what answers rays. Takes the description's arrays over.
+VERNIER_API std::shared_ptr<Scene> build_scene(SceneDescription description,
+                                               const SceneOptions& options = {});
+
+/// What came up when the scene was built.
+VERNIER_API const std::vector<Notice>& notices_of(const Scene& scene);
+
+/// From where a scene is seen whole. Without angles from the front, a little to the right and from above;
+/// what is flat, from its face.
+struct FittedView {
+  std::optional<float> azimuth, elevation;  ///< of the viewer about the scene, azimuth 0 on +z, toward +x
+  float roll = 0;                           ///< of the camera, clockwise
+  float yfov = 0.698131701f;                ///< 40 degrees
+  bool orthographic = false;
+  float margin = 0.08f;  ///< part of the picture that is left free at either end of its tighter side
+};
+
+/// A camera that sees the scene whole, as it stands, in a picture of that width over height; surroundings
+/// that are far larger than the rest do not count.
+VERNIER_API CameraDescription fitted_camera(const Scene& scene, float aspect, const FittedView& view = {});
+
+/// "studio" or "sky", as --env has them. Throws Error(usage) that lists the names there are.
+VERNIER_API std::shared_ptr<const EnvironmentDescription> built_in_environment(const std::string& name);
+/// A latitude-longitude picture from a file. Throws Error(input).
+VERNIER_API std::shared_ptr<const EnvironmentDescription> read_environment(const std::string& path);
 
 }  // namespace vernier

@@ -271,6 +271,15 @@ Checkpoint read_checkpoint(const std::string& path) {
   return checkpoint;
 }
 
+void require_checkpoint(const std::string& path) {
+  Reader reader(path);
+  try {
+    read_header(reader);
+  } catch (const Json::exception& error) {
+    reader.damaged(error.what());
+  }
+}
+
 std::string take(RenderIdentity& identity, const std::string& name) {
   const auto found =
       std::find_if(identity.begin(), identity.end(), [&](const auto& pair) { return pair.first == name; });

@@ -3,18 +3,13 @@
 
 #include <memory>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "integrators/render/render_state.h"
+#include "integrators/render/settings_identity.h"
 
 // A render kept in a file. docs/resume.md describes its format.
 
 namespace vernier {
-
-/// What the samples of a render depend on, as names and values for people to read: "seed" "7"; each name
-/// once. Two renders with equal ones may go on from each other.
-using RenderIdentity = std::vector<std::pair<std::string, std::string>>;
 
 /// Removes what is called `name` and returns its value; empty where there is none.
 std::string take(RenderIdentity& identity, const std::string& name);
@@ -29,6 +24,9 @@ void write_checkpoint(const std::string& path, const RenderIdentity& identity, c
 
 /// Throws Error(input) when the file is not a checkpoint of this version, or is damaged.
 Checkpoint read_checkpoint(const std::string& path);
+
+/// Throws Error(input) when the file does not begin as a checkpoint of this version does.
+void require_checkpoint(const std::string& path);
 
 /// Throws Error(input) that names what differs when `checkpoint`, read from `path`, is of another render than
 /// `wanted`.

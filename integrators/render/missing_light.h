@@ -5,6 +5,7 @@
 #include <span>
 
 #include "integrators/integrator.h"
+#include "vernier/result.h"
 
 namespace vernier {
 
@@ -28,20 +29,6 @@ struct TileLight {
     samples += other.samples;
     return *this;
   }
-};
-
-/// How much light of one kind a picture leaves out.
-struct MissingFigure {
-  double share = 0;  ///< of all light, found and missing, by luminance
-  /// Relative RMS of what is missing over tiles, in the unit of ErrorEstimate::rel_rmse: at least the error
-  /// that it makes by itself, but for what evens out within a tile.
-  double rel_rmse = 0;
-};
-
-/// Bias that a picture is known to have, which its samples cannot show.
-struct MissingEstimate {
-  MissingFigure bent;   ///< light of lamps through glass that bends it: at most
-  MissingFigure depth;  ///< paths longer than the depth limit
 };
 
 /// Of tiles whose samples are spread evenly over their pixels.

@@ -39,20 +39,18 @@ void keep_few(std::vector<BadSample>& examples) {
 /// One render call. Tiles write disjoint pixels of the film; totals are merged once a tile.
 class Renderer {
  public:
-  Renderer(const Scene& scene, const Camera& camera, const Integrator& integrator,
-           const RenderSettings& options, const std::atomic<bool>& stop, RenderHooks hooks)
-      : scene_(scene),
-        camera_(camera),
-        integrator_(integrator),
-        options_(options),
-        crop_(options.crop.width > 0 ? options.crop : Crop{0, 0, options.width, options.height}),
+  Renderer(const RenderJob& job, RenderState& state, const std::atomic<bool>& stop, RenderHooks hooks)
+      : scene_(job.scene),
+        camera_(job.camera),
+        integrator_(job.integrator),
+        options_(job.settings),
+        crop_(rendered_part(job.settings)),
         stop_(stop),
         hooks_(std::move(hooks)),
-        state_(hooks_.from ? std::move(*hooks_.from)
-                           : RenderState(crop_.width, crop_.height, options.adaptive)),
+        state_(state),
         seconds_before_(state_.so_far.seconds) {}
 
-  RenderResult run() {
+  void run() {
     next_save_ = seconds() + hooks_.save_interval;
     if (state_.so_far.samples > 0) look();
     while (!reason_) {
@@ -62,7 +60,7 @@ class Renderer {
       look();
     }
     if (hooks_.save) save();
-    return finish();
+    finish();
   }
 
  private:
@@ -138,7 +136,7 @@ class Renderer {
       reason_ = StopReason::error;
   }
 
-  RenderResult finish() {
+  void finish() {
     result().reason = *reason_;
     const auto& looks = result().convergence;
     const bool looked = !looks.empty() && looks.back().samples_per_pixel == samples_per_pixel();
@@ -147,7 +145,6 @@ class Renderer {
       result().convergence.push_back({seconds(), samples_per_pixel(), result().error});
     result().missing = estimate_missing(state_.light);
     result().seconds = seconds();
-    return std::move(result());
   }
 
   /// As far as limits allow.
@@ -271,7 +268,7 @@ class Renderer {
   const std::atomic<bool>& stop_;
   const RenderHooks hooks_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  RenderState state_;
+  RenderState& state_;
   const double seconds_before_;  ///< of rendering, by those who did what state_ began with
   double next_save_ = 0;
   double saving_ = 0;  ///< seconds taken by saves, in which nothing was rendered
@@ -283,9 +280,20 @@ class Renderer {
 
 }  // namespace
 
+Crop rendered_part(const RenderSettings& settings) {
+  return settings.crop.width > 0 ? settings.crop : Crop{0, 0, settings.width, settings.height};
+}
+
+void render(const RenderJob& job, RenderState& state, const std::atomic<bool>& stop, RenderHooks hooks) {
+  Renderer(job, state, stop, std::move(hooks)).run();
+}
+
 RenderResult render(const Scene& scene, const Camera& camera, const Integrator& integrator,
-                    const RenderSettings& options, const std::atomic<bool>& stop, RenderHooks hooks) {
-  return Renderer(scene, camera, integrator, options, stop, std::move(hooks)).run();
+                    const RenderSettings& settings, const std::atomic<bool>& stop, RenderHooks hooks) {
+  const Crop part = rendered_part(settings);
+  RenderState state(part.width, part.height, settings.adaptive);
+  render({scene, camera, integrator, settings}, state, stop, std::move(hooks));
+  return std::move(state.so_far);
 }
 
 }  // namespace vernier

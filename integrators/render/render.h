@@ -20,16 +20,6 @@ class Camera;
 class Scene;
 struct RenderState;
 
-/// State after some tiles; handed to the observer a few times a second at most, on a thread of its own.
-struct RenderProgress {
-  double seconds = 0;
-  double fraction = 0;  ///< of what was asked for, by the limit that is nearest; in [0, 1]
-  double samples_per_pixel = 0;
-  uint64_t samples = 0;  ///< camera samples in total
-  RayCounts rays;
-  std::optional<ErrorEstimate> error;  ///< as of the last pass after which it was looked at
-};
-
 /// A sample that was not finite or was negative, so that it can be replayed. x, y are in the full picture.
 struct BadSample {
   int x = 0, y = 0;
@@ -38,8 +28,6 @@ struct BadSample {
   // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 reads what the compiler writes
   auto operator<=>(const BadSample&) const = default;
 };
-
-enum class StopReason { samples, time, error, interrupted };
 
 struct RenderResult {
   explicit RenderResult(Film empty) : film(std::move(empty)) {}
@@ -61,7 +49,7 @@ struct RenderResult {
   std::vector<BadSample> bad_sample_examples;  ///< the first few by column, row, half and index
 };
 
-/// Who is told of a render on its way, and where it starts.
+/// Who is told of a render on its way.
 struct RenderHooks {
   /// Holds up nothing but the end of render(), which waits for it to return. Once it has thrown it is told no
   /// more.
@@ -71,15 +59,27 @@ struct RenderHooks {
   /// render() while nothing is rendered; its time counts nowhere.
   std::function<void(const RenderState&)> save = {};
   double save_interval = std::numeric_limits<double>::infinity();
-  /// A state (integrators/render_state.h) to go on from, of a render with the same options but for its
-  /// limits; null: from the beginning. It is emptied. The limits, and all figures, are of the whole render.
-  std::shared_ptr<RenderState> from = nullptr;
 };
 
-/// Renders tiles of the picture in passes on all threads. The same bytes for any number of threads, and
-/// wherever a render with the same limits was cut and gone on with. `stop` may become true at any time (from
-/// a signal handler): rendering then ends within about a tile, with what is there.
+/// The whole picture where no crop is asked for.
+Crop rendered_part(const RenderSettings& settings);
+
+/// What is rendered: all that the samples depend on, and when to stop. Refers to things that live as long.
+struct RenderJob {
+  const Scene& scene;
+  const Camera& camera;
+  const Integrator& integrator;
+  const RenderSettings& settings;
+};
+
+/// Renders tiles of the picture in passes on all threads, from where `state` is, of a render with the same
+/// settings but for its limits, to the limits, which are of the whole render. The same bytes for any number
+/// of threads, and wherever a render with the same limits was cut and gone on with. `stop` may become true at
+/// any time (from a signal handler): rendering then ends within about a tile, with what is there.
+void render(const RenderJob& job, RenderState& state, const std::atomic<bool>& stop, RenderHooks hooks = {});
+
+/// The same from the beginning.
 RenderResult render(const Scene& scene, const Camera& camera, const Integrator& integrator,
-                    const RenderSettings& options, const std::atomic<bool>& stop, RenderHooks hooks = {});
+                    const RenderSettings& settings, const std::atomic<bool>& stop, RenderHooks hooks = {});
 
 }  // namespace vernier

@@ -12,9 +12,10 @@ namespace vernier {
 std::span<const AcceleratorEntry> accelerators() {
   using enum Watertight;
   static constexpr std::array table{
-      AcceleratorEntry{"bvh", "our own: watertight at edges and vertices, the same answers on every machine",
-                       at_edges_and_vertices, build_bvh},
       AcceleratorEntry{"embree", "Embree, robust mode: may leak at vertices", at_edges, build_embree_robust},
+      AcceleratorEntry{
+          "bvh", "our own, to check it: watertight at edges and vertices, the same answers on every machine",
+          at_edges_and_vertices, build_bvh},
       AcceleratorEntry{"embree-fast", "Embree, fast mode: leaks at edges and vertices", nowhere,
                        build_embree_fast},
       AcceleratorEntry{"bvh-moeller", "our own with the Moeller-Trumbore test: leaks at edges and vertices",

@@ -143,6 +143,9 @@ SceneDescription import_scene(const std::string& path, const ImportOptions& opti
   add_textures(document, imported.derived, scene, fingerprints);
   scene.environment = read_image_light(document, scene.notices, fingerprints);
   scene.hash = combined_fingerprint(fingerprints);
+  if (!options.variant.empty()) scene.choices.emplace_back("variant", options.variant);
+  if (!options.animation.empty()) scene.choices.emplace_back("animation", options.animation);
+  if (options.time) scene.choices.emplace_back("at", fmt::format("{}", *options.time));
 
   note_bent_light(scene);
   if (options.strict) check_strictly(document, scene);

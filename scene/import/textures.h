@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ktx2/ktx2.h"
 #include "scene/import/document.h"
 #include "scene/import/specular_glossiness.h"
 #include "vernier/scene.h"

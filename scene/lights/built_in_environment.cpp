@@ -3,7 +3,9 @@
 
 #include <array>
 
+#include "core/base/names.h"
 #include "core/base/parallel.h"
+#include "core/image/image_io.h"
 
 namespace vernier {
 namespace {
@@ -90,6 +92,18 @@ float heading(const CameraDescription& camera) {
   const float across = std::hypot(ahead.x, ahead.z);
   const Vec3f to = across > 0.02f ? ahead : (ahead.y < 0 ? camera.to_world.y : -camera.to_world.y);
   return std::atan2(-to.x, -to.z);
+}
+
+std::shared_ptr<const EnvironmentDescription> built_in_environment(const std::string& name) {
+  auto environment = std::make_shared<EnvironmentDescription>();
+  environment->picture = find_by_name(built_in_environments(), "environment", name).picture();
+  return environment;
+}
+
+std::shared_ptr<const EnvironmentDescription> read_environment(const std::string& path) {
+  auto environment = std::make_shared<EnvironmentDescription>();
+  environment->picture = std::make_shared<const Image>(read_image(path));
+  return environment;
 }
 
 }  // namespace vernier

@@ -15,6 +15,8 @@ class EnvironmentLight : public Light {
  public:
   explicit EnvironmentLight(std::shared_ptr<const EnvironmentDescription> description);
 
+  const EnvironmentDescription& description() const { return *description_; }
+
   std::optional<LightSample> sample(const SurfacePoint& from, const Vec2d& u) const override;
   LightEval eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const override;
   float power(const Bounds& scene) const override;

@@ -80,10 +80,8 @@ class CheckpointMutation : public testing::Test {
     try {
       Checkpoint checkpoint = read_checkpoint(path);
       if (!go_on || !checkpoint.state->fits(options_.width, options_.height, true)) return {};
-      RenderHooks hooks;
-      hooks.from = std::move(checkpoint.state);
       options_.limits.spp = 49;  // through the end of the pass and a planning
-      render(scene_, *camera_, *integrator_, options_, stop_, std::move(hooks));
+      render({scene_, *camera_, *integrator_, options_}, *checkpoint.state, stop_);
       return {};
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::input);

@@ -41,9 +41,10 @@ class Resume : public testing::Test {
     return render(scene_, *camera_, *integrator_, options_, stop_, std::move(hooks));
   }
   RenderResult go_on(const RenderState& state) {
-    RenderHooks hooks;
-    hooks.from = std::make_shared<RenderState>(state);
-    return run(std::move(hooks));
+    RenderState further = state;
+    stop_ = false;
+    vernier::render({scene_, *camera_, *integrator_, options_}, further, stop_);
+    return std::move(further.so_far);
   }
   /// The state at the end of a render.
   RenderState last_state() {

@@ -100,7 +100,7 @@ TEST_P(AcceleratorImages, ShowTheSameTrianglesAtTheSameDepths) {
 
 TEST_P(AcceleratorImages, ConvergeToTheSamePicture) {
   if (GetParam().name == "brute_force") return;  // minutes, on the spheres
-  const auto integrator = test::make_integrator("path", {});
+  const auto integrator = make_integrator("path", {});
   RenderSettings options;
   options.width = width;
   options.height = height;

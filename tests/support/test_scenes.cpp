@@ -140,10 +140,6 @@ SceneBuilder& SceneBuilder::environment(const std::function<float(const Vec3f&)>
 
 Scene SceneBuilder::build(const std::string& accelerator) { return Scene(description_, {accelerator}); }
 
-std::unique_ptr<Integrator> make_integrator(std::string_view name, const IntegratorOptions& options) {
-  return find_by_name(integrators(), "integrator", std::string(name)).make(options);
-}
-
 std::unique_ptr<Integrator> path(const IntegratorOptions& options) {
   return make_integrator("path", options);
 }

@@ -52,8 +52,6 @@ class SceneBuilder {
 
 /// The path integrator.
 std::unique_ptr<Integrator> path(const IntegratorOptions& options);
-/// Any integrator by its name in the table.
-std::unique_ptr<Integrator> make_integrator(std::string_view name, const IntegratorOptions& options);
 
 /// Means of independent sets of `samples` stratified samples each of the radiance along `ray`, first channel.
 /// Values within a set are not independent; their means are.

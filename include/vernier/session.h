@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vernier/image.h"
+#include "vernier/result.h"
+#include "vernier/settings.h"
+
+namespace vernier {
+
+struct RenderResult;
+
+/// One picture of a scene, rendered until its limits, and further when they grow. It prints nothing, has no
+/// globals and catches no signals; several may run at once, each called by one thread at a time. Rendering
+/// uses the threads of the calling thread's TBB arena. The same picture to the bit for any number of threads,
+/// and wherever it was stopped and gone on with.
+class VERNIER_API RenderSession {
+ public:
+  /// The scene must not change any more. Throws Error(usage) that says what to set when the settings have no
+  /// size, a crop beyond the picture, an unknown integrator, or a camera with a defect.
+  RenderSession(std::shared_ptr<const Scene> scene, RenderSettings settings);
+  ~RenderSession();
+  RenderSession(const RenderSession&) = delete;
+  RenderSession& operator=(const RenderSession&) = delete;
+
+  const RenderSettings& settings() const;
+  void set_limits(const RenderLimits& limits);
+
+  /// Tells a few times a second how far run() is, on a thread of its own.
+  void on_progress(std::function<void(const RenderProgress&)> observe);
+  /// Calls back while run() holds still: every `seconds` of rendering, and at its end. For save().
+  void on_checkpoint(std::function<void()> save, double seconds);
+
+  /// Goes on to the limits. `stop` may become true at any time, from another thread or a signal handler: it
+  /// ends within about a tile. Throws Error(usage) while another thread is in a call to this session.
+  StopReason run(const std::atomic<bool>& stop);
+  StopReason run();
+
+  /// All that it takes to go on elsewhere, to a file that is replaced wholly or not at all. Throws
+  /// Error(output), and Error(usage) for a scene that nothing identifies (SceneDescription::hash).
+  void save(const std::string& path) const;
+  /// Goes on from such a file. Throws Error(input) when it is damaged or of another scene or other settings
+  /// but for the limits. Tells whether it comes from another build or platform, whose last bits may differ.
+  std::vector<Notice> load(const std::string& path);
+
+  RenderStatus status() const;
+  /// R, G, B, scene-linear Rec.709, then the channels of `layers`: "error,albedo,...", or "all".
+  LayeredImage picture(const std::string& layers = "") const;
+  /// The same to a file: .exr with the layers; .png and .jpg as shown by the default view. Its header says
+  /// how wrong it is. Throws Error(output).
+  void write(const std::string& path, const std::string& layers = "") const;
+
+  /// All that is known, for the project's own programs.
+  const RenderResult& result() const;
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// All of libvernier: read or describe a scene, build it, render it in a session.
+
+#include "vernier/error.h"
+#include "vernier/scene.h"
+#include "vernier/session.h"
+#include "vernier/settings.h"
+#include "vernier/version.h"

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vernier/session.h"
+#include "vernier/version.h"
+
+#include <fmt/format.h>
+
+#include <thread>
+
+#include "core/base/build.h"
+#include "core/base/names.h"
+#include "core/display/display.h"
+#include "integrators/render/checkpoint.h"
+#include "integrators/render/layers.h"
+#include "integrators/render/picture.h"
+#include "scene/camera.h"
+#include "scene/scene.h"
+
+namespace vernier {
+namespace {
+
+[[noreturn]] void refuse(const std::string& problem) { throw Error(ErrorKind::usage, problem); }
+
+void check(const Scene* scene, const RenderSettings& settings) {
+  if (!scene) refuse("a RenderSession needs a scene; build_scene() makes one");
+  if (settings.width <= 0 || settings.height <= 0)
+    refuse(fmt::format("a picture of {}x{} pixels cannot be rendered; set RenderSettings::width and height",
+                       settings.width, settings.height));
+  const Crop& crop = settings.crop;
+  if (crop.width != 0 && (crop.width < 0 || crop.height <= 0 || crop.x < 0 || crop.y < 0 ||
+                          crop.width > settings.width - crop.x || crop.height > settings.height - crop.y))
+    refuse(fmt::format("the crop {} reaches beyond the picture of {}x{}", crop_text(crop), settings.width,
+                       settings.height));
+  const CameraDescription& camera = settings.camera;
+  if (!camera.defect.empty()) refuse(camera.defect);
+  if (!(length(camera.to_world.z) > 0 && length(cross(camera.to_world.y, camera.to_world.z)) > 0))
+    refuse("the camera has no direction; its to_world is singular");
+}
+
+void check(const RenderLimits& limits) {
+  if (limits.spp < 0 || limits.spp > int(RenderState::most_samples))
+    refuse(fmt::format("{} samples a pixel; expected 0, for no limit, to {}", limits.spp,
+                       RenderState::most_samples));
+  if (!(limits.seconds >= 0)) refuse(fmt::format("a time limit of {} seconds", limits.seconds));
+  if (!(limits.error >= 0)) refuse(fmt::format("a target error of {}", limits.error));
+}
+
+}  // namespace
+
+class RenderSession::State {
+ public:
+  State(std::shared_ptr<const Scene> its_scene, RenderSettings its_settings)
+      : scene(std::move(its_scene)),
+        settings((check(scene.get(), its_settings), check(its_settings.limits), std::move(its_settings))),
+        integrator(make_integrator(settings.integrator, settings.integrator_options)),
+        camera(settings.camera, settings.width, settings.height),
+        render(rendered_part(settings).width, rendered_part(settings).height, settings.adaptive) {}
+
+  RenderIdentity identity() const {
+    RenderIdentity identity{{"version", version()}};
+    for (auto& pair : scene->identity()) identity.push_back(std::move(pair));
+    for (auto& pair : identity_of(settings)) identity.push_back(std::move(pair));
+    return identity;
+  }
+
+  const std::shared_ptr<const Scene> scene;
+  RenderSettings settings;
+  const std::unique_ptr<Integrator> integrator;
+  const Camera camera;
+  RenderState render;
+  RenderHooks hooks;
+  std::atomic<std::thread::id> user{};  ///< the thread in a call; none: std::thread::id()
+};
+
+namespace {
+
+/// Marks a session as in use by this thread, which may call it again from its own callbacks.
+class Use {
+ public:
+  explicit Use(std::atomic<std::thread::id>& user) : user_(user) {
+    std::thread::id nobody{};
+    const auto self = std::this_thread::get_id();
+    is_outermost_ = user.compare_exchange_strong(nobody, self);
+    if (!is_outermost_ && nobody != self)
+      refuse("this RenderSession is in use by another thread; a session takes one call at a time");
+  }
+  ~Use() {
+    if (is_outermost_) user_ = std::thread::id();
+  }
+  Use(const Use&) = delete;
+  Use& operator=(const Use&) = delete;
+  bool is_outermost() const { return is_outermost_; }
+
+ private:
+  std::atomic<std::thread::id>& user_;
+  bool is_outermost_;
+};
+
+}  // namespace
+
+RenderSession::RenderSession(std::shared_ptr<const Scene> scene, RenderSettings settings)
+    : state_(std::make_unique<State>(std::move(scene), std::move(settings))) {}
+RenderSession::~RenderSession() = default;
+
+const RenderSettings& RenderSession::settings() const { return state_->settings; }
+
+void RenderSession::set_limits(const RenderLimits& limits) {
+  const Use use(state_->user);
+  check(limits);
+  state_->settings.limits = limits;
+}
+
+void RenderSession::on_progress(std::function<void(const RenderProgress&)> observe) {
+  const Use use(state_->user);
+  state_->hooks.observe = std::move(observe);
+}
+
+void RenderSession::on_checkpoint(std::function<void()> save, double seconds) {
+  const Use use(state_->user);
+  state_->hooks.save = nullptr;
+  if (save) state_->hooks.save = [save = std::move(save)](const RenderState&) { save(); };
+  state_->hooks.save_interval = seconds;
+}
+
+StopReason RenderSession::run(const std::atomic<bool>& stop) {
+  const Use use(state_->user);
+  if (!use.is_outermost()) refuse("run() cannot be called by a callback of its own");
+  State& s = *state_;
+  vernier::render({*s.scene, s.camera, *s.integrator, s.settings}, s.render, stop, s.hooks);
+  return s.render.so_far.reason;
+}
+
+StopReason RenderSession::run() {
+  const std::atomic<bool> never = false;
+  return run(never);
+}
+
+void RenderSession::save(const std::string& path) const {
+  const Use use(state_->user);
+  if (state_->scene->identity().front().second.empty())
+    refuse("a render of a scene that nothing identifies cannot be saved; set SceneDescription::hash");
+  RenderIdentity identity = state_->identity();
+  identity.emplace_back("build", build_id());
+  identity.emplace_back("platform", platform());
+  write_checkpoint(path, identity, state_->render);
+}
+
+std::vector<Notice> RenderSession::load(const std::string& path) {
+  const Use use(state_->user);
+  Checkpoint checkpoint = read_checkpoint(path);
+  std::vector<Notice> notices;
+  const auto warn = [&](std::string text) {
+    notices.push_back({Notice::Severity::warning, {}, std::move(text)});
+  };
+  if (take(checkpoint.identity, "build") != build_id())
+    warn(
+        fmt::format("{} was written by another build of Vernier; if that one took other samples, the picture "
+                    "will not be the same as if it had never stopped",
+                    path));
+  if (const std::string other = take(checkpoint.identity, "platform"); other != platform())
+    warn(
+        fmt::format("{} was written on another platform ({}; this is {}), whose last bits may differ; the "
+                    "picture may not be the same as if it had never stopped",
+                    path, other, platform()));
+  require_same_render(path, checkpoint.identity, state_->identity());
+  const Crop part = rendered_part(state_->settings);
+  if (!checkpoint.state->fits(part.width, part.height, state_->settings.adaptive))
+    throw Error(ErrorKind::input, path, {},
+                "is damaged: what it holds is not of the size that it says; use another checkpoint or render "
+                "from the beginning");
+  state_->render = std::move(*checkpoint.state);
+  RenderResult& so_far = state_->render.so_far;
+  so_far.error = estimate_error(so_far.film);
+  so_far.missing = estimate_missing(state_->render.light);
+  return notices;
+}
+
+RenderStatus RenderSession::status() const {
+  const Use use(state_->user);
+  const RenderResult& r = state_->render.so_far;
+  return {r.seconds, samples_per_pixel(r), r.samples, r.rays, r.error, r.missing, r.bad_samples};
+}
+
+LayeredImage RenderSession::picture(const std::string& layers) const {
+  const Use use(state_->user);
+  return with_layers(state_->render.so_far.film, find_layers(layers), *state_->scene, state_->camera,
+                     state_->settings);
+}
+
+void RenderSession::write(const std::string& path, const std::string& layers) const {
+  const Use use(state_->user);
+  check_writable_image(path);
+  DisplayOptions display;
+  if (is_display_file(path)) display.view = display_views(display).front();
+  write_picture(path, picture(layers), result_metadata(state_->render.so_far), display);
+}
+
+const RenderResult& RenderSession::result() const { return state_->render.so_far; }
+
+}  // namespace vernier

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vernier/settings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/base/fingerprint.h"
+#include "core/base/names.h"
+#include "integrators/render/settings_identity.h"
+
+namespace vernier {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int format_version = 1;
+
+constexpr std::array<std::pair<std::string_view, LightSampling>, 3> light_samplings{
+    {{"mis", LightSampling::mis}, {"light", LightSampling::light}, {"bsdf", LightSampling::bsdf}}};
+
+/// Calls visit(name, values...) for all that samples depend on. What is not listed here is in no settings
+/// file, and a checkpoint would go on without noticing that it has changed.
+template <typename Settings, typename Visit>
+void for_each_setting(Settings& s, const Visit& visit) {
+  auto& options = s.integrator_options;
+  visit("camera", s.camera);
+  visit("size", s.width, s.height);
+  visit("crop", s.crop);
+  visit("integrator", s.integrator);
+  visit("max-depth", options.max_depth);
+  visit("light-sampling", options.light_sampling);
+  visit("roulette", options.russian_roulette);
+  visit("show", options.show);
+  visit("ambient", options.ambient);
+  visit("cutoff", options.cutoff);
+  visit("adaptive", s.adaptive);
+  visit("seed", s.seed);
+}
+
+Json encode(const Vec3f& v) { return {v.x, v.y, v.z}; }
+Json encode(LightSampling value) {
+  for (const auto& [name, sampling] : light_samplings)
+    if (sampling == value) return std::string(name);
+  return nullptr;
+}
+Json encode(const Crop& crop) {
+  return crop.width > 0 ? Json{crop.x, crop.y, crop.width, crop.height} : Json(nullptr);
+}
+Json encode(const CameraDescription& camera) {
+  const bool perspective = camera.kind == CameraDescription::Kind::perspective;
+  const Transform& t = camera.to_world;
+  return {{"name", camera.name},
+          {"kind", perspective ? "perspective" : "orthographic"},
+          {"yfov", camera.yfov},
+          {"aspect", camera.aspect},
+          {"xmag", camera.xmag},
+          {"ymag", camera.ymag},
+          {"to_world", {encode(t.x), encode(t.y), encode(t.z), encode(t.origin)}}};
+}
+template <typename T>
+Json encode(const T& value) {
+  return value;
+}
+
+void decode(const Json& json, Vec3f& v) {
+  for (int i = 0; i < 3; ++i) v[i] = json.at(size_t(i)).get<float>();
+}
+void decode(const Json& json, LightSampling& value) {
+  std::vector<std::string> names;
+  for (const auto& [name, sampling] : light_samplings) {
+    names.emplace_back(name);
+    if (json.get<std::string>() == name) value = sampling;
+  }
+  if (encode(value) != json) throw_unknown_name("light-sampling", json.get<std::string>(), names);
+}
+void decode(const Json& json, Crop& crop) {
+  crop = {};
+  if (json.is_null()) return;
+  crop = {json.at(0).get<int>(), json.at(1).get<int>(), json.at(2).get<int>(), json.at(3).get<int>()};
+}
+void decode(const Json& json, CameraDescription& camera) {
+  camera = {};
+  camera.name = json.at("name").get<std::string>();
+  const auto kind = json.at("kind").get<std::string>();
+  if (kind != "perspective" && kind != "orthographic")
+    throw_unknown_name("camera kind", kind, std::array<std::string, 2>{"perspective", "orthographic"});
+  camera.kind =
+      kind == "perspective" ? CameraDescription::Kind::perspective : CameraDescription::Kind::orthographic;
+  camera.yfov = json.at("yfov").get<float>();
+  camera.aspect = json.at("aspect").get<float>();
+  camera.xmag = json.at("xmag").get<float>();
+  camera.ymag = json.at("ymag").get<float>();
+  const Json& columns = json.at("to_world");
+  Transform& t = camera.to_world;
+  size_t i = 0;
+  for (Vec3f* column : {&t.x, &t.y, &t.z, &t.origin}) decode(columns.at(i++), *column);
+}
+template <typename T>
+void decode(const Json& json, T& value) {
+  value = json.get<T>();
+}
+
+/// For people to read.
+std::string text(bool value) { return value ? "on" : "off"; }
+std::string text(const std::string& value) { return value; }
+std::string text(LightSampling value) { return encode(value).get<std::string>(); }
+std::string text(const CameraDescription& camera) {
+  Json json = encode(camera);
+  json.erase("name");
+  const std::string numbers = json.dump();
+  return fmt::format("{} ({:.8})", camera.name, fingerprint(std::as_bytes(std::span(numbers))));
+}
+template <typename T>
+std::string text(const T& value) {
+  return fmt::format("{}", value);
+}
+std::string text(const Crop& crop) { return crop.width > 0 ? crop_text(crop) : "none"; }
+
+}  // namespace
+
+std::string crop_text(const Crop& crop) {
+  return fmt::format("{}x{}+{}+{}", crop.width, crop.height, crop.x, crop.y);
+}
+
+RenderIdentity identity_of(const RenderSettings& settings) {
+  RenderIdentity identity;
+  for_each_setting(settings, [&](const char* name, const auto&... values) {
+    const std::string all = fmt::format("{}", fmt::join(std::array{text(values)...}, "x"));
+    if (all != "none") identity.emplace_back(name, all);
+  });
+  return identity;
+}
+
+std::string RenderSettings::to_json() const {
+  Json json{{"vernier_settings", format_version}};
+  for_each_setting(*this, [&](const char* name, const auto&... values) {
+    if constexpr (sizeof...(values) == 1)
+      json[name] = encode(values...);
+    else
+      json[name] = {encode(values)...};
+  });
+  const bool timed = std::isfinite(limits.seconds);
+  json["limits"] = {{"spp", limits.spp},
+                    {"seconds", timed ? Json(limits.seconds) : Json(nullptr)},
+                    {"error", limits.error}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+RenderSettings RenderSettings::from_json(std::string_view json_text) {
+  const auto refuse = [](const std::string& problem) {
+    throw Error(ErrorKind::input, "settings", {}, problem);
+  };
+  RenderSettings settings;
+  try {
+    const Json json = Json::parse(json_text);
+    const int version = json.at("vernier_settings").get<int>();
+    if (version != format_version)
+      refuse(
+          fmt::format("are of format {}; this version of Vernier reads format {}", version, format_version));
+    for_each_setting(settings, [&](const char* name, auto&... values) {
+      const Json& value = json.at(name);
+      if constexpr (sizeof...(values) == 1) {
+        decode(value, values...);
+      } else {
+        size_t i = 0;
+        (decode(value.at(i++), values), ...);
+      }
+    });
+    const Json& limits = json.at("limits");
+    settings.limits.spp = limits.at("spp").get<int>();
+    if (!limits.at("seconds").is_null()) settings.limits.seconds = limits.at("seconds").get<double>();
+    settings.limits.error = limits.at("error").get<double>();
+  } catch (const Json::exception& error) {
+    refuse(fmt::format("cannot be read: {}", error.what()));
+  }
+  return settings;
+}
+
+}  // namespace vernier

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "vernier/settings.h"
+
+namespace vernier {
+
+/// What the samples of a render depend on, as names and values for people to read: "seed" "7"; each name
+/// once. Two renders with equal ones may go on from each other.
+using RenderIdentity = std::vector<std::pair<std::string, std::string>>;
+
+/// All but the limits.
+RenderIdentity identity_of(const RenderSettings& settings);
+
+/// "640x360+10+20", as --crop takes it.
+std::string crop_text(const Crop& crop);
+
+}  // namespace vernier
