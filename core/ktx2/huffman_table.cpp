@@ -40,9 +40,9 @@ std::vector<uint8_t> read_lengths(const HuffmanTable& code, size_t count, BitRea
     }
     const Run& run = runs[symbol - first_run_symbol];
     const size_t repeats = run.least + bits.read(run.extra_bits);
-    if (repeats > count - lengths.size()) throw broken_table("has more code lengths than symbols");
     if (!run.of_zeros && (lengths.empty() || lengths.back() == 0))
       throw broken_table("repeats a code length where there is none");
+    if (repeats > count - lengths.size()) throw broken_table("has more code lengths than symbols");
     lengths.insert(lengths.end(), repeats, run.of_zeros ? uint8_t{0} : lengths.back());
   }
   return lengths;

@@ -242,18 +242,6 @@ TEST(ImportMaterials, ReplacesAnUnreadableImage) {
   }
 }
 
-TEST(ImportMaterials, FallsBackToTheTexturesPlainSource) {
-  const TemporaryFolder folder;
-  folder.write("a.ktx2", std::string("\xABKTX 20\xBB\r\n\x1A\n", 12));
-  folder.write("a.png", png({1, 2, 3}));
-  GltfFile file = with_material(base_color_texture(0));
-  file.json["extensionsUsed"] = {"KHR_texture_basisu"};
-  file.add("images", {{"uri", "a.ktx2"}});
-  file.add("images", {{"uri", "a.png"}});
-  file.add("textures", {{"source", 1}, {"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}});
-  EXPECT_EQ(import_scene(file.save(folder)).textures.at(0).image().values, (std::vector<uint8_t>{1, 2, 3}));
-}
-
 TEST(ImportMaterials, ChoosesVariants) {
   GltfFile file = with_material({{"name", "plain"}});
   file.add("materials", {{"name", "red"}});
