@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
-#include "core/base/error.h"
 #include "core/ktx2/huffman_table.h"
+#include "vernier/error.h"
 
 namespace vernier::test {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <random>
 
-#include "core/base/error.h"
 #include "core/ktx2/ktx2.h"
 #include "tests/support/effort.h"
 #include "tests/support/ktx2_files.h"
+#include "vernier/error.h"
 
 // Damaged KTX2 files: the fixtures, changed at random, in their headers and codebooks more than in the
 // blocks. Whatever is done to one, it is either decoded to the size that it tells or refused by one Error.

@@ -6,8 +6,8 @@
 
 #include <boost/crc.hpp>
 
-#include "core/base/error.h"
 #include "tests/support/ktx2_files.h"
+#include "vernier/error.h"
 
 namespace vernier::test {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // For libFuzzer: build/fuzz/tests/ktx2_fuzz CORPUS tests/core/ktx2
-#include "core/base/error.h"
 #include "core/ktx2/ktx2.h"
+#include "vernier/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   try {

@@ -45,6 +45,7 @@ class SceneBuilder {
   /// Radiance as a function of the direction it comes from, on a picture of 2 height x height texels.
   SceneBuilder& environment(const std::function<float(const Vec3f&)>& radiance, int height = 64);
   Scene build(const std::string& accelerator = {});
+  const SceneDescription& description() const { return description_; }
 
  private:
   SceneDescription description_;

