@@ -12,7 +12,7 @@ TAG = "SPDX-License-Identifier: Apache-2.0"
 COMMENTS = {
     (".cpp", ".h", ".hpp", ".js", ".cpp.in", ".h.in"): ("// ", ""),
     (".css",): ("/* ", " */"),
-    (".py", ".sh", ".cmake", ".yml", ".yaml", "CMakeLists.txt", "Containerfile", ".ci/run", ".ci/check_format",
+    (".py", ".sh", ".cmake", ".yml", ".yaml", "CMakeLists.txt", "Containerfile", "Doxyfile", ".ci/run", ".ci/check_format",
      ".ci/test_sanitized"): ("# ", ""),
 }
 

@@ -160,7 +160,7 @@ std::optional<Vec3f> Subject::flat_normal(const Vec3f& viewer) const {
   Imath::jacobiEigenSolver(tensor, areas, axes);
   std::array<std::pair<double, double>, 3> sizes;  // area that faces along the axis, extent along it
   for (int i = 0; i < 3; ++i) {
-    const Vec3f axis(float(axes[0][i]), float(axes[1][i]), float(axes[2][i]));
+    const Vec3f axis{float(axes[0][i]), float(axes[1][i]), float(axes[2][i])};
     sizes[size_t(i)] = {areas[i], dot(farthest(axis), axis) + dot(farthest(-axis), -axis)};
   }
   const size_t facing = size_t(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());

@@ -67,7 +67,7 @@ Float8 LightNode::importance(const LightReceiver& receiver) const {
   sin_sphere = square_root(sin_sphere);
 
   Float8 cos_axis = -(axis_x_ * x + axis_y_ * y + axis_z_ * z) * inverse;
-  cos_axis = two_sided_ & (cos_axis < 0) ? -cos_axis : cos_axis;
+  cos_axis = (two_sided_ & (cos_axis < 0)) ? -cos_axis : cos_axis;
   const Float8 cos_nearest = cos_difference(sine(cos_axis), cos_axis, sin_spread_, cos_spread_);
   Float8 cos_emitted = cos_difference(sine(cos_nearest), cos_nearest, sin_sphere, cos_sphere);
   Mask8 lit = cos_emitted > cos_emission_;
@@ -90,7 +90,7 @@ Float8 LightNode::importance(const LightReceiver& receiver) const {
   // However faint a light is beside others.
   keep_greater(Float8{} + std::numeric_limits<float>::min(), value);
   // A place without extent does not light itself.
-  return (outside ? lit : radius2_ > 0) & (power_ > 0) ? value : Float8{};
+  return ((outside ? lit : radius2_ > 0) & (power_ > 0)) ? value : Float8{};
 }
 
 }  // namespace vernier
