@@ -7,6 +7,7 @@
 
 #include "integrators/render/render.h"
 #include "integrators/render/settings_identity.h"
+#include "scene/camera.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_scenes.h"
 
