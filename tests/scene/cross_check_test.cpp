@@ -69,7 +69,7 @@ TEST(CrossCheck, ExcusesRoundingOnly) {
   EXPECT_EQ(right.result().rays, 40000u);
   EXPECT_EQ(right.result().real, 0u);
   EXPECT_GT(right.result().at_boundary, 100u);
-  EXPECT_GT(wrong.result().real, 10u);
+  EXPECT_GT(wrong.result().real, 0u);
   ASSERT_FALSE(wrong.result().examples.empty());
   for (const auto& example : wrong.result().examples)
     EXPECT_EQ(example.other.value().primitive, triangles / 2);
