@@ -18,7 +18,9 @@ size_t while_rendering(const MemoryUse& use) {
 }
 
 size_t while_writing(const MemoryUse& use) {
-  size_t kept = Film::bytes_per_pixel() + color + size_t(use.layer_channels) * sizeof(float);
+  // The session could go on, so it keeps all that takes.
+  size_t kept =
+      RenderState::bytes_per_pixel(use.adaptive) + color + size_t(use.layer_channels) * sizeof(float);
   size_t peak = kept + (use.error_layers ? error_layers_bytes_per_pixel() : 0);
   if (use.denoise) {
     peak = std::max(peak, kept + denoise_bytes_per_pixel());
