@@ -54,6 +54,7 @@ std::vector<WantedTexture> used_textures(const std::vector<MaterialDescription>&
       wanted.as_linear |= encoding == TexelEncoding::linear;
     });
   std::vector<WantedTexture> list;
+  list.reserve(used.size());
   for (const auto& [index, wanted] : used) list.push_back(wanted);
   return list;
 }

@@ -212,7 +212,8 @@ void report(const Document& document, int texture, const Choice& choice, std::ve
   const std::string problem = fmt::format("texture '{}' cannot be read: {}", name, choice.problem);
   const auto& required = document.model().extensionsRequired;
   if (extension && std::find(required.begin(), required.end(), extension) != required.end())
-    document.fail(place, fmt::format("{}; the file requires {} and has no other image", problem, extension));
+    document.fail(place,
+                  fmt::format("{}; the file requires {} and no image stands for it", problem, extension));
   notices.push_back({Notice::Severity::warning, place,
                      problem + ". Where it colours a surface that is magenta, elsewhere it is left out"});
 }
@@ -228,6 +229,7 @@ DecodedTextures read_textures(const Document& document, const std::vector<Wanted
     return index < from_file ? index : derived[size_t(index - from_file)].texture;
   };
   std::vector<int> sources;
+  sources.reserve(wanted.size());
   for (const WantedTexture& texture : wanted) sources.push_back(source_of(texture.index));
   const std::map<int, DecodedImage> images = decode_images(document, sources);
 

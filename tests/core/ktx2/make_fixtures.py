@@ -63,8 +63,9 @@ def grey(x, y):
     return (int(127 + 120 * math.sin(x * 0.4) * math.cos(y * 0.3)),) * 3
 
 
-def flat_with_edge(x, y):
-    return (220, 40, 90) if x < 70 else (10, 200, 60)
+def one_color(x, y):
+    """With enough texels that runs of equal blocks take their long form."""
+    return (220, 40, 90)
 
 
 def diagonals(x, y):
@@ -85,7 +86,7 @@ ENCODED = {
     "etc1s_alpha": ((17, 9), waves, ["-q", "255"]),
     "etc1s_grey": ((21, 13), grey, ["-linear", "-q", "40"]),
     "etc1s_noise": ((31, 22), noise(3), ["-q", "255", "-no_selector_rdo", "-no_endpoint_rdo"]),
-    "etc1s_runs": ((150, 40), flat_with_edge, ["-q", "1"]),
+    "etc1s_runs": ((150, 48), one_color, []),
     "etc1s_mipmaps": ((16, 32), waves, ["-mipmap"]),
     "uastc_gradient": ((5, 7), gradient, ["-uastc", "-ktx2_no_zstandard"]),
     "uastc_zstandard": ((30, 26), waves, ["-uastc", "-uastc_level", "3"]),
