@@ -226,6 +226,10 @@ std::shared_ptr<Scene> build_scene(SceneDescription description, const SceneOpti
   return std::make_shared<Scene>(std::move(description), options);
 }
 
+void surround(Scene& scene, std::shared_ptr<const EnvironmentDescription> environment) {
+  scene.surround(std::move(environment));
+}
+
 const std::vector<Notice>& notices_of(const Scene& scene) { return scene.notices(); }
 
 }  // namespace vernier

@@ -103,13 +103,13 @@ Surroundings surround(Scene& scene, const std::optional<Surroundings>& asked, co
     if (const auto environment = turned(*asked, view)) scene.surround(environment);
     return *asked;
   }
+  RenderSettings seen = options;
+  seen.camera = view;
+  if (!is_dark(scene, seen)) return {std::string(scene.has_environment() ? own : nothing), nullptr};
   const bool lightless = scene.lights().size() == 0;
-  const Camera camera(view, options.width, options.height);
-  if (!lightless && !is_dark(visible_light(scene, camera, options.width, options.height)))
-    return {std::string(scene.has_environment() ? own : nothing), nullptr};
-  Surroundings studio =
-      built_in(find_by_name(built_in_environments(), "environment", default_surroundings), 0, 1);
-  scene.surround(turned(studio, view));
+  Surroundings studio{std::string(default_surroundings),
+                      built_in_environment(std::string(default_surroundings), view)};
+  scene.surround(studio.environment);
   log.add({Notice::Severity::info,
            {},
            fmt::format("{}; adding a studio around it, --env none leaves it as it is",

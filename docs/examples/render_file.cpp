@@ -14,8 +14,6 @@ int main(int argc, char** argv) try {
   vernier::SceneDescription description = vernier::import_scene(argv[1]);
   for (const vernier::Notice& notice : description.notices) std::fprintf(stderr, "%s\n", notice.text.c_str());
   const auto cameras = description.cameras;
-  if (!description.environment && description.lights.empty())
-    description.environment = vernier::built_in_environment("studio");
   const auto scene = vernier::build_scene(std::move(description));
 
   vernier::RenderSettings settings;
@@ -23,6 +21,8 @@ int main(int argc, char** argv) try {
   settings.height = 240;
   settings.camera = cameras.empty() ? vernier::fitted_camera(*scene, 4 / 3.f) : cameras[0];
   settings.limits = {.spp = 1024, .error = 0.02};
+  if (vernier::is_dark(*scene, settings))
+    vernier::surround(*scene, vernier::built_in_environment("studio", settings.camera));
   vernier::RenderSession session(scene, settings);
   session.run();
 

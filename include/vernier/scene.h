@@ -130,6 +130,9 @@ struct SceneOptions {
 VERNIER_API std::shared_ptr<Scene> build_scene(SceneDescription description,
                                                const SceneOptions& options = {});
 
+/// Puts an environment around a scene, in place of the one it has, if any. Not while anybody renders it.
+VERNIER_API void surround(Scene& scene, std::shared_ptr<const EnvironmentDescription> environment);
+
 /// What came up when the scene was built.
 VERNIER_API const std::vector<Notice>& notices_of(const Scene& scene);
 
@@ -147,8 +150,10 @@ struct FittedView {
 /// that are far larger than the rest do not count.
 VERNIER_API CameraDescription fitted_camera(const Scene& scene, float aspect, const FittedView& view = {});
 
-/// "studio" or "sky", as --env has them. Throws Error(usage) that lists the names there are.
-VERNIER_API std::shared_ptr<const EnvironmentDescription> built_in_environment(const std::string& name);
+/// "studio" or "sky", as --env has them; the studio is turned so that its key light comes from the camera's
+/// upper left. Throws Error(usage) that lists the names there are.
+VERNIER_API std::shared_ptr<const EnvironmentDescription> built_in_environment(
+    const std::string& name, const CameraDescription& camera = {});
 /// A latitude-longitude picture from a file. Throws Error(input).
 VERNIER_API std::shared_ptr<const EnvironmentDescription> read_environment(const std::string& path);
 

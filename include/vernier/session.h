@@ -15,6 +15,9 @@ namespace vernier {
 
 struct RenderResult;
 
+/// Whether the scene's own lights leave what the camera sees dark; a few thousand paths tell.
+VERNIER_API bool is_dark(const Scene& scene, const RenderSettings& settings);
+
 /// One picture of a scene, rendered until its limits, and further when they grow. It prints nothing, has no
 /// globals and catches no signals; several may run at once, each called by one thread at a time. Rendering
 /// uses the threads of the calling thread's TBB arena. The same picture to the bit for any number of threads,

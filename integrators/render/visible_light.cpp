@@ -9,6 +9,7 @@
 #include "integrators/render/first_hit.h"
 #include "scene/camera.h"
 #include "scene/segment.h"
+#include "vernier/session.h"
 
 namespace vernier {
 namespace {
@@ -82,5 +83,11 @@ double covered_luminance(const Film& film, const Scene& scene, const Camera& cam
 }
 
 bool is_dark(const VisibleLight& light) { return light.lit < 0.1f && light.shown < 0.5f; }
+
+bool is_dark(const Scene& scene, const RenderSettings& settings) {
+  if (scene.lights().size() == 0) return true;
+  const Camera camera(settings.camera, settings.width, settings.height);
+  return is_dark(visible_light(scene, camera, settings.width, settings.height));
+}
 
 }  // namespace vernier

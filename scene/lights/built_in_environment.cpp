@@ -94,9 +94,12 @@ float heading(const CameraDescription& camera) {
   return std::atan2(-to.x, -to.z);
 }
 
-std::shared_ptr<const EnvironmentDescription> built_in_environment(const std::string& name) {
+std::shared_ptr<const EnvironmentDescription> built_in_environment(const std::string& name,
+                                                                   const CameraDescription& camera) {
+  const auto& entry = find_by_name(built_in_environments(), "environment", name);
   auto environment = std::make_shared<EnvironmentDescription>();
-  environment->picture = find_by_name(built_in_environments(), "environment", name).picture();
+  environment->picture = entry.picture();
+  if (entry.turns_with_camera) environment->rotation = heading(camera);
   return environment;
 }
 
