@@ -83,7 +83,8 @@ void check_shape(Bytes file, uint64_t max_texels) {
   const uint64_t width = field(20), height = field(24), depth = field(28);
   const uint64_t layers = field(32), faces = field(36);
   if (faces != 1)
-    throw input_error("a texture of " + to_string(faces) + " faces is a cube map; a 2D picture is expected");
+    throw input_error("a texture of " + to_string(faces) +
+                      " faces (a cube map has 6); a 2D picture is expected");
   if (depth != 0)
     throw input_error("a depth of " + to_string(depth) + " makes it 3D; a 2D picture is expected");
   if (layers > 1)

@@ -43,7 +43,7 @@ std::optional<std::array<uint8_t, texel_count>> subsets_of(size_t mode, size_t p
     masks = three_subsets[pattern];
   } else if (uastc_modes[mode].subsets == 2) {
     const std::span<const uint16_t> patterns =
-        mode == seven ? std::span<const uint16_t>(two_subsets_of_seven) : two_subsets;
+        mode == own_patterns_mode ? std::span<const uint16_t>(own_two_subsets) : two_subsets;
     if (pattern >= patterns.size()) return std::nullopt;
     masks.second = patterns[pattern];
   }

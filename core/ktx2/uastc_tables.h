@@ -29,7 +29,7 @@ struct UastcMode {
 
 constexpr size_t solid_mode = 8;
 constexpr size_t reserved_mode = 19;
-constexpr size_t seven = 7;  ///< mode whose patterns are of their own
+constexpr size_t own_patterns_mode = 7;  ///< of two subsets in patterns that no other mode has
 
 using enum UastcMode::Colors;
 /// By mode; the solid one has but a colour.
@@ -66,9 +66,9 @@ constexpr std::array<uint16_t, 30> two_subsets{0xCCCC, 0x8888, 0x1111, 0xECC8, 0
                                                0xC800, 0x0013, 0xFE80, 0x17FF, 0x0017, 0x00FF, 0xFFF0, 0x0FFF,
                                                0xFF71, 0x8EFF, 0x08CE, 0x008C, 0x7310, 0xCEFF, 0x7331, 0x088C,
                                                0xCEEF, 0x6666, 0xF00F, 0x5555, 0x0F0F, 0x36C9};
-constexpr std::array<uint16_t, 19> two_subsets_of_seven{
-    0x00F0, 0x4444, 0x0133, 0xCC80, 0xF0FF, 0x2222, 0xFFC8, 0xCCCE, 0x3C03, 0x00EE,
-    0x7700, 0x3003, 0x00CE, 0xFF80, 0x6FFF, 0x1333, 0x11FF, 0x136C, 0x00EF};
+constexpr std::array<uint16_t, 19> own_two_subsets{0x00F0, 0x4444, 0x0133, 0xCC80, 0xF0FF, 0x2222, 0xFFC8,
+                                                   0xCCCE, 0x3C03, 0x00EE, 0x7700, 0x3003, 0x00CE, 0xFF80,
+                                                   0x6FFF, 0x1333, 0x11FF, 0x136C, 0x00EF};
 
 /// Texels of the second and of the third subset.
 struct ThreeSubsets {

@@ -213,7 +213,7 @@ void report(const Document& document, int texture, const Choice& choice, std::ve
   const auto& required = document.model().extensionsRequired;
   if (extension && std::find(required.begin(), required.end(), extension) != required.end())
     document.fail(place,
-                  fmt::format("{}; the file requires {} and no image stands for it", problem, extension));
+                  fmt::format("{}; the scene requires {} and no image stands for it", problem, extension));
   notices.push_back({Notice::Severity::warning, place,
                      problem + ". Where it colours a surface that is magenta, elsewhere it is left out"});
 }
