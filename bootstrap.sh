@@ -20,6 +20,7 @@ usage: bash bootstrap.sh COMMAND
   build   deps, then configure and build the program: build/release/vernier
   demo    build, then render a Cornell box and other scenes with each integrator into out/
   test    deps, then build the program and its tests, and run them all
+  package deps, then build a Debian package for any x86-64-v2 processor and faster ones: build/package/package/*.deb
   help    this text
 
 Each command can be run again at any time and only does what is left to do.
@@ -108,7 +109,7 @@ render_with_each_integrator() {
 }
 
 demo() {
-  build vernier
+  build vernier_launcher
   mkdir -p out
   SECONDS=0
   render_with_each_integrator tests/scenes/cornell_box.gltf cornell_box --size 512x512 --spp 64
@@ -133,11 +134,34 @@ run_tests() {
   ctest --test-dir "$build_folder" --parallel "$(job_count)" --output-on-failure --no-tests=error
 }
 
+# --- package ---
+
+# build_for LEVEL FOLDER [OPTION...]: the program for a level of processor.
+build_for() {
+  local level=$1 folder=$2
+  shift 2
+  cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DVERNIER_TESTS=OFF \
+    -DVERNIER_MARCH="$level" "$@"
+  cmake --build "$folder" --parallel "$(job_count)"
+}
+
+package() {
+  deps
+  if [[ $(uname -m) == x86_64 ]]; then
+    build_for x86-64-v3 build/package-x86-64-v3
+    build_for x86-64-v2 build/package -DVERNIER_OTHER_BUILDS="$PWD/build/package-x86-64-v3"
+  else
+    build_for "" build/package
+  fi
+  cpack --config build/package/CPackConfig.cmake
+}
+
 case "${1:-help}" in
   deps) deps ;;
-  build) build vernier && say "build: the program is $PWD/$program" ;;
+  build) build vernier_launcher && say "build: the program is $PWD/$program" ;;
   demo) demo ;;
   test) run_tests ;;
+  package) package ;;
   help | -h | --help) usage ;;
   *)
     usage >&2

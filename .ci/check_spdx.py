@@ -8,12 +8,12 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TAG = "SPDX-License-Identifier: Apache-2.0"
-# How a comment begins and ends, by what the name of the file ends with; the script without an ending is .ci/run.
+# How a comment begins and ends, by what the name of the file ends with.
 COMMENTS = {
     (".cpp", ".h", ".hpp", ".js", ".cpp.in", ".h.in"): ("// ", ""),
     (".css",): ("/* ", " */"),
     (".py", ".sh", ".cmake", ".yml", ".yaml", "CMakeLists.txt", "Containerfile", "Doxyfile", ".ci/run", ".ci/check_format",
-     ".ci/test_sanitized"): ("# ", ""),
+     ".ci/test_sanitized", "tests/fuzz/run"): ("# ", ""),
 }
 
 

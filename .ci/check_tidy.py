@@ -17,12 +17,29 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build" / "release"
+DATABASE = BUILD / "tidy"
 CACHE = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "vernier-tidy"
+
+
+def without_precompiled(command):
+    """The command without the use of precompiled headers, which only save time and which no other compiler reads."""
+    unwanted = {"-fpch-preprocess", "-Winvalid-pch", "-Xclang", "-include", "-include-pch"}
+    return [word for word in shlex.split(command) if word not in unwanted and "cmake_pch" not in word]
+
+
+def entries_to_check():
+    """Those of the compilation database that are source files; the database for clang-tidy is written on the way."""
+    entries = json.loads((BUILD / "compile_commands.json").read_text(encoding="utf-8"))
+    entries = [{**entry, "command": shlex.join(without_precompiled(entry["command"]))} for entry in entries
+               if "cmake_pch" not in entry["file"]]
+    DATABASE.mkdir(parents=True, exist_ok=True)
+    (DATABASE / "compile_commands.json").write_text(json.dumps(entries), encoding="utf-8")
+    return entries
 
 
 def preprocessed(entry):
     """The file with all it includes, comments kept (they can silence checks), without paths."""
-    words = [w for w in shlex.split(entry["command"]) if not w.endswith("ccache")]
+    words = shlex.split(entry["command"])
     command = words[:1] + ["-E", "-P", "-C"]
     skip = False
     for word in words[1:]:
@@ -47,7 +64,7 @@ def check(entry, version):
     stamp = CACHE / key
     if stamp.exists():
         return path, "", True
-    run = subprocess.run(["clang-tidy", "--quiet", "-p", str(BUILD), "--extra-arg=-Wno-unknown-warning-option",
+    run = subprocess.run(["clang-tidy", "--quiet", "-p", str(DATABASE), "--extra-arg=-Wno-unknown-warning-option",
                           str(path)], capture_output=True, text=True, check=False)
     if run.returncode == 0:
         stamp.touch()
@@ -59,8 +76,7 @@ def main():
     CACHE.mkdir(parents=True, exist_ok=True)
     version = subprocess.run(["clang-tidy", "--version"], check=True, capture_output=True).stdout
     wanted = {str(pathlib.Path(name).resolve()) for name in sys.argv[1:]}
-    entries = [entry for entry in json.loads((BUILD / "compile_commands.json").read_text(encoding="utf-8"))
-               if not wanted or entry["file"] in wanted]
+    entries = [entry for entry in entries_to_check() if not wanted or entry["file"] in wanted]
     failed = remembered = 0
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for path, report, known in pool.map(lambda entry: check(entry, version), entries):

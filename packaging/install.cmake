@@ -1,20 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-# What `cmake --install` puts where: the program, and libvernier with its headers and what finds it.
-include(GNUInstallDirs)
+# Where `cmake --install` puts libvernier, its headers, and what finds it.
 include(CMakePackageConfigHelpers)
 
-install(TARGETS vernier)
-install(TARGETS libvernier EXPORT vernier)
-install(DIRECTORY include/vernier DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.h)
+install(TARGETS libvernier EXPORT vernier COMPONENT common)
+install(DIRECTORY include/vernier DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT common FILES_MATCHING PATTERN *.h)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/vernier)
-install(EXPORT vernier NAMESPACE vernier:: FILE vernier-targets.cmake DESTINATION ${package_folder})
+install(EXPORT vernier NAMESPACE vernier:: FILE vernier-targets.cmake DESTINATION ${package_folder}
+  COMPONENT common)
 configure_package_config_file(packaging/vernier-config.cmake.in ${PROJECT_BINARY_DIR}/vernier-config.cmake
   INSTALL_DESTINATION ${package_folder})
 # Before 1.0 another minor version may change the interface.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/vernier-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/vernier-config.cmake ${PROJECT_BINARY_DIR}/vernier-config-version.cmake
-  DESTINATION ${package_folder})
+  DESTINATION ${package_folder} COMPONENT common)
 
 configure_file(packaging/vernier.pc.in ${PROJECT_BINARY_DIR}/vernier.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/vernier.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(FILES ${PROJECT_BINARY_DIR}/vernier.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT common)

@@ -40,5 +40,6 @@ void register_compare(Program& program);
 void register_denoise(Program& program);
 void register_merge(Program& program);
 void register_bench(Program& program);
+void register_cli_files(Program& program);
 
 }  // namespace vernier::apps

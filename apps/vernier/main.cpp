@@ -19,7 +19,7 @@ namespace {
 /// Every subcommand, in the order of `vernier --help`.
 constexpr void (*subcommands[])(Program&) = {
     register_render,  register_info,  register_verify, register_compare,
-    register_denoise, register_merge, register_bench,
+    register_denoise, register_merge, register_bench,  register_cli_files,
 };
 
 ExitCode exit_code(ErrorKind kind) {
@@ -53,7 +53,8 @@ std::vector<std::string> flag_names(const CLI::App& app) {
 
 std::vector<std::string> subcommand_names(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  for (const CLI::App* command : app.get_subcommands({}))
+    if (!command->get_group().empty()) names.push_back(command->get_name());
   return names;
 }
 

@@ -15,6 +15,7 @@
 #include "scene/lights/built_in_environment.h"
 #include "scene/scene.h"
 #include "vernier/error.h"
+#include "vernier/session.h"
 
 namespace vernier::apps {
 namespace {

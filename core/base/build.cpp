@@ -62,6 +62,7 @@ std::string build_id() {
 
 std::string platform() {
   std::string features;
+#ifdef __x86_64__
   // __builtin_cpu_supports() wants literals. The features are those that glibc has variants for.
   const auto add = [&](bool has, const char* name) {
     if (has) features += fmt::format("{}{}", features.empty() ? "" : " ", name);
@@ -71,6 +72,7 @@ std::string platform() {
   add(__builtin_cpu_supports("fma"), "fma");
   add(__builtin_cpu_supports("fma4"), "fma4");
   add(__builtin_cpu_supports("sse4.1"), "sse4.1");
+#endif
   return fmt::format("{}, glibc {}, {}", features.empty() ? "baseline" : features, gnu_get_libc_version(),
                      VERNIER_COMPILER);
 }

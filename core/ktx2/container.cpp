@@ -172,7 +172,8 @@ TransferFunction transfer_function(uint8_t number) {
 void add_remarks(uint8_t flags, Bytes metadata, std::vector<std::string>& remarks) {
   constexpr uint8_t premultiplied = 1;
   if (flags & premultiplied)
-    remarks.push_back("its color is said to be multiplied by alpha, which glTF forbids; it is used as it is");
+    remarks.emplace_back(
+        "its color is said to be multiplied by alpha, which glTF forbids; it is used as it is");
   while (metadata.size() >= 4) {
     const size_t length = read_number<uint32_t>(metadata, 0);
     if (length > metadata.size() - 4) return;
@@ -182,8 +183,8 @@ void add_remarks(uint8_t flags, Bytes metadata, std::vector<std::string>& remark
     value = value.substr(0, value.find('\0'));
     for (const auto& [name, allowed] : {std::pair{"KTXorientation", "rd"}, std::pair{"KTXswizzle", "rgba"}})
       if (key == name && value != allowed)
-        remarks.push_back("its " + std::string(key) + " is '" + std::string(value.substr(0, 16)) +
-                          "', glTF allows '" + allowed + "' only and it is read as that");
+        remarks.emplace_back("its " + std::string(key) + " is '" + std::string(value.substr(0, 16)) +
+                             "', glTF allows '" + allowed + "' only and it is read as that");
     metadata = metadata.subspan(std::min(metadata.size(), 4 + (length + 3) / 4 * 4));
   }
 }

@@ -37,7 +37,8 @@ MissingEstimate missing(const Scene& scene, int max_depth, bool adaptive = true,
   render_options.limits.spp = 64;
   render_options.adaptive = adaptive;
   const std::atomic<bool> stop = false;
-  return render(scene, Camera(camera, 24, 24), *make_integrator(std::string(integrator), options), render_options, stop)
+  return render(scene, Camera(camera, 24, 24), *make_integrator(std::string(integrator), options),
+                render_options, stop)
       .missing;
 }
 

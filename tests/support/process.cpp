@@ -92,7 +92,7 @@ ProcessResult run_process(const std::vector<std::string>& arguments, const SendS
 }
 
 ProcessResult run_vernier(std::vector<std::string> arguments, const SendSignal& signal) {
-  arguments.insert(arguments.begin(), VERNIER_BINARY);
+  arguments.emplace(arguments.begin(), VERNIER_BINARY);
   return run_process(arguments, signal);
 }
 
