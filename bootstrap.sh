@@ -123,6 +123,8 @@ demo() {
   done
   ((found)) || say "demo: the models of the package assimp-testmodels are not there; only our own scenes were rendered"
   say "demo: rendered in $SECONDS s"
+  "$program" verify tests/scenes/cornell_box.gltf
+  "$program" verify tests/scenes/two_spheres.gltf
   say "demo: pictures are in $PWD/out:"
   ls -1 out/*.png
 }

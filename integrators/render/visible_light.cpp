@@ -46,7 +46,8 @@ VisibleLight visible_light(const Scene& scene, const Camera& camera, int width, 
   parallel_for(pixels.size(), [&](size_t i) {
     for (uint32_t sample = 0; sample < samples_per_pixel; ++sample) {
       Sampler sampler(uint32_t(i), sample, seed);
-      const Vec2f at = (Vec2f(float(i % grid), float(i / grid)) + sampler.next2()) / float(grid);
+      const auto column = i % grid, row = i / grid;
+      const Vec2f at = (Vec2f(float(column), float(row)) + sampler.next2()) / float(grid);
       look(scene, *integrator, camera.ray({at.x * float(width), at.y * float(height)}), sampler, pixels[i]);
     }
   });
