@@ -3,9 +3,10 @@
 """Runs clang-tidy with the checks of .clang-tidy over every source file, on all processors.
 
 What passed is remembered by the content that the compiler sees, as ccache does, so that only what changed is looked at
-again. Usage: check_tidy.py [FILE...]
+again. Usage: check_tidy.py [--minutes N] [FILE...]
 """
 
+import argparse
 import concurrent.futures
 import hashlib
 import json
@@ -14,6 +15,7 @@ import pathlib
 import shlex
 import subprocess
 import sys
+import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build" / "release"
@@ -58,34 +60,43 @@ def checks_of(path):
     return b"".join((folder / ".clang-tidy").read_bytes() for folder in folders if (folder / ".clang-tidy").is_file())
 
 
-def check(entry, version):
+def check(entry, version, deadline):
+    """The path, what clang-tidy has to say of it, and what became of it: known, passed, failed or left."""
     path = pathlib.Path(entry["file"])
+    if time.monotonic() > deadline:
+        return path, "", "left"
     key = hashlib.sha256(version + checks_of(path) + preprocessed(entry)).hexdigest()
     stamp = CACHE / key
     if stamp.exists():
-        return path, "", True
+        return path, "", "known"
     run = subprocess.run(["clang-tidy", "--quiet", "-p", str(DATABASE), "--extra-arg=-Wno-unknown-warning-option",
                           str(path)], capture_output=True, text=True, check=False)
     if run.returncode == 0:
         stamp.touch()
-        return path, "", False
-    return path, run.stdout + run.stderr, False
+        return path, "", "passed"
+    return path, run.stdout + run.stderr, "failed"
 
 
 def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("files", nargs="*", metavar="FILE")
+    parser.add_argument("--minutes", type=float, default=float("inf"),
+                        help="begin no file after that; those left are told, and the next run goes on with them")
+    arguments = parser.parse_args()
+    deadline = time.monotonic() + 60 * arguments.minutes
     CACHE.mkdir(parents=True, exist_ok=True)
     version = subprocess.run(["clang-tidy", "--version"], check=True, capture_output=True).stdout
-    wanted = {str(pathlib.Path(name).resolve()) for name in sys.argv[1:]}
+    wanted = {str(pathlib.Path(name).resolve()) for name in arguments.files}
     entries = [entry for entry in entries_to_check() if not wanted or entry["file"] in wanted]
-    failed = remembered = 0
+    counts = {"known": 0, "passed": 0, "failed": 0, "left": 0}
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for path, report, known in pool.map(lambda entry: check(entry, version), entries):
-            remembered += known
+        for path, report, outcome in pool.map(lambda entry: check(entry, version, deadline), entries):
+            counts[outcome] += 1
             if report:
-                failed += 1
                 print(f"{path.relative_to(ROOT)}:\n{report}", flush=True)
-    print(f"clang-tidy: {len(entries)} files, {remembered} of them unchanged since they passed, {failed} with problems")
-    return 1 if failed or not entries else 0
+    print(f"clang-tidy: {len(entries)} files, {counts['known']} of them unchanged since they passed, "
+          f"{counts['failed']} with problems, {counts['left']} left for want of time")
+    return 1 if counts["failed"] or not entries else 0
 
 
 if __name__ == "__main__":
