@@ -28,6 +28,7 @@ std::string quoted(const std::string& text) {
 /// "vernier render --spp"|"vernier render -t"
 std::string bash_pattern(const CliCommand& command, const std::vector<std::string>& flags) {
   std::vector<std::string> words;
+  words.reserve(flags.size());
   for (const auto& flag : flags) words.push_back(fmt::format("\"{} {}\"", command.name, flag));
   return fmt::format("{}", fmt::join(words, "|"));
 }
