@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/import/specular_glossiness.h"
 
+#include <cmath>
+
 namespace vernier {
 
 std::shared_ptr<const Image8> roughness_of(const Image8& source, float factor) {
@@ -10,7 +12,7 @@ std::shared_ptr<const Image8> roughness_of(const Image8& source, float factor) {
     for (int x = 0; x < source.width; ++x) {
       const uint8_t* texel = source.pixel(x, y);
       const float glossiness = factor * (has_alpha ? float(texel[source.channels - 1]) : 255.f);
-      roughness->pixel(x, y)[1] = uint8_t(255 - glossiness + 0.5f);
+      roughness->pixel(x, y)[1] = uint8_t(std::lround(255 - glossiness));
     }
   return roughness;
 }
