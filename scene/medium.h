@@ -30,6 +30,15 @@ class MediumStack {
  public:
   static constexpr uint32_t air = 0xffffffff;
 
+  MediumStack() = default;
+  /// Only what is there is copied: at most points that is nothing.
+  MediumStack(const MediumStack& other) { *this = other; }
+  MediumStack& operator=(const MediumStack& other) {
+    size_ = other.size_;
+    if (size_ > 0) volumes_ = other.volumes_;
+    return *this;
+  }
+
   bool empty() const { return size_ == 0; }
   /// The volume whose medium fills the point; `air` when it lies in none.
   uint32_t current() const { return size_ == 0 ? air : volumes_[size_ - 1]; }

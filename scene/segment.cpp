@@ -104,6 +104,13 @@ Interaction interaction_at(const Scene& scene, const Segment& segment, const Sur
   return crossing.interaction();
 }
 
+/// Where there are no volumes.
+std::optional<Interaction> intersect_in_air(const Scene& scene, const Ray& ray) {
+  std::optional<Interaction> at;
+  if (const auto point = scene.intersect(ray)) static_cast<SurfacePoint&>(at.emplace()) = *point;
+  return at;
+}
+
 std::optional<Interaction> intersect(const Scene& scene, Segment segment, bool from_camera) {
   Ray& ray = segment.ray;
   while (const auto point = scene.intersect(ray)) {
@@ -162,6 +169,7 @@ Segment camera_segment(const Scene& scene, const Ray& ray) {
 }
 
 std::optional<Interaction> intersect(const Scene& scene, const Segment& segment) {
+  if (scene.volumes().empty()) return intersect_in_air(scene, segment.ray);
   return intersect(scene, segment, false);
 }
 
@@ -171,15 +179,16 @@ std::optional<Interaction> intersect_from_camera(const Scene& scene, const Segme
 
 Passage transmittance(const Scene& scene, const Segment& segment) {
   const Ray& ray = segment.ray;
-  const float scale = length(ray.direction);
   thread_local std::vector<RawHit> clear;
   clear.clear();
   if (scene.accelerator().occluded(ray, clear)) return {};
+  if (clear.empty() && scene.volumes().empty()) return {{1, 1, 1}};
   sort_hits(clear);
 
   Passage passage{{1, 1, 1}};
   MediumStack media = segment.media;
   float t = 0;
+  const float scale = length(ray.direction);
   const Vec3f direction = ray.direction * (1 / scale);
   for (size_t i = 0; i < clear.size();) {
     const SurfacePoint point = scene.geometry().surface_point(ray, clear[i++]);
@@ -210,8 +219,9 @@ Passage transmittance(const Scene& scene, const Segment& segment) {
 }
 
 Shading shade(const Scene& scene, const Interaction& at, const Vec3f& wo, const Rgb& carried) {
-  Encounter encounter{.front = at.front, .channel = only_channel(carried)};
+  Encounter encounter{.front = at.front};
   if (!scene.volumes().empty()) {
+    encounter.channel = only_channel(carried);
     encounter.front = scene.volumes().is_met_from_outside(at);
     encounter.outside_ior = scene.volumes().medium(encounter.front ? at.before : at.beyond).ior;
   }

@@ -13,18 +13,27 @@ namespace vernier {
 /// Triangles of volumes that lie, to rounding, where a ray begins: it has crossed them already.
 class CrossedTriangles {
  public:
+  CrossedTriangles() = default;
+  /// Only what is there is copied: at most points that is nothing.
+  CrossedTriangles(const CrossedTriangles& other) { *this = other; }
+  CrossedTriangles& operator=(const CrossedTriangles& other) {
+    size_ = other.size_;
+    if (size_ > 0) ids_ = other.ids_;
+    return *this;
+  }
+
   void add(const TriangleId& triangle) {
-    if (size_ < ids_.size()) ids_[size_++] = triangle;
+    if (size_ < ids_.size()) ids_[size_++] = {triangle.instance, triangle.primitive};
   }
   bool contains(const TriangleId& triangle) const {
     for (uint32_t i = 0; i < size_; ++i)
-      if (ids_[i] == triangle) return true;
+      if (ids_[i][0] == triangle.instance && ids_[i][1] == triangle.primitive) return true;
     return false;
   }
 
  private:
   uint32_t size_ = 0;
-  std::array<TriangleId, 4> ids_;
+  std::array<std::array<uint32_t, 2>, 4> ids_;  ///< instance and primitive
 };
 
 /// A ray, and what it travels through from its origin on.

@@ -3,6 +3,7 @@
 
 #include "apps/vernier/commands.h"
 #include "apps/vernier/denoising.h"
+#include "apps/vernier/display_flags.h"
 #include "apps/vernier/flags.h"
 #include "apps/vernier/messages.h"
 #include "apps/vernier/render_options.h"
@@ -15,6 +16,7 @@ namespace {
 struct DenoiseFlags {
   std::string input, output, filter = std::string(denoisers().front().name);
   unsigned threads = 0;
+  DisplayOptions display;
   bool quiet = false;
 };
 
@@ -31,15 +33,14 @@ ExitCode run_denoise(const DenoiseFlags& flags, const std::string& command_line)
     for (const Denoiser& entry : denoisers()) fmt::print("{:<12} {}\n", entry.name, entry.description);
     return ExitCode::done;
   }
+  if (print_requested_views(flags.display)) return ExitCode::done;
   if (flags.input.empty()) throw Error(ErrorKind::usage, "missing IN (.exr); see vernier denoise --help");
   if (flags.output.empty())
-    throw Error(ErrorKind::usage, "missing -o FILE (.exr); see vernier denoise --help");
+    throw Error(ErrorKind::usage, "missing -o FILE (.exr, .png, .jpg); see vernier denoise --help");
   const Denoiser& denoiser = find_denoiser(flags.filter);
-  if (is_display_file(flags.output))
-    throw Error(
-        ErrorKind::usage, {}, "-o",
-        "a denoised picture is scene-linear: name an .exr (render --denoise writes .png and .jpg too)");
   check_writable_image(flags.output);
+  const DisplayOptions display =
+      is_display_file(flags.output) ? with_chosen_view(flags.display) : flags.display;
   const ThreadLimit threads(flags.threads);
   const LayeredImage noisy = read_layers(flags.input);
   if (!noisy.linear)
@@ -51,7 +52,7 @@ ExitCode run_denoise(const DenoiseFlags& flags, const std::string& command_line)
   Metadata& metadata = picture.metadata;
   for (const auto& [name, value] : denoised_metadata(denoiser, denoised.error)) metadata[name] = value;
   metadata["vernier:denoiseCommand"] = command_line;
-  write_exr(flags.output, picture.image, picture.channel_names, metadata);
+  write_picture(flags.output, picture, metadata, display);
   if (!flags.quiet)
     fmt::print("{}\n", one_line(fmt::format("wrote {}: {}x{}, {}", flags.output, picture.image.width,
                                             picture.image.height, denoised_text(denoiser, denoised.error))));
@@ -65,10 +66,12 @@ void register_denoise(Program& program) {
   auto flags = std::make_shared<DenoiseFlags>();
   command->add_option("IN", flags->input, "scene-linear picture, best with --aov error,half,albedo,normal")
       ->type_name("");
-  command->add_option("-o,--output", flags->output, "denoised picture, .exr")->type_name("FILE");
+  command->add_option("-o,--output", flags->output, "denoised picture: .exr, or .png or .jpg for display")
+      ->type_name("FILE");
   command->add_option("--filter", flags->filter, "'help' lists them")
       ->type_name("NAME")
       ->capture_default_str();
+  add_display_flags(*command, flags->display);
   add_threads_flag(*command, flags->threads);
   command->add_flag("-q,--quiet", flags->quiet, "say nothing but errors");
   command->footer(

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "apps/vernier/commands.h"
+#include "apps/vernier/display_flags.h"
 #include "apps/vernier/flags.h"
 #include "apps/vernier/messages.h"
 #include "apps/vernier/render_options.h"
@@ -21,6 +22,7 @@ namespace {
 struct MergeFlags {
   std::vector<std::string> inputs;
   std::string output, layers;
+  DisplayOptions display;
   unsigned threads = 0;
   bool quiet = false;
 };
@@ -79,20 +81,22 @@ Metadata merged_metadata(const Merged& merged, const std::string& command_line) 
 }
 
 ExitCode run_merge(const MergeFlags& flags, const std::string& command_line) {
+  if (print_requested_views(flags.display)) return ExitCode::done;
   if (flags.inputs.size() < 2)
     throw Error(ErrorKind::usage, "missing CHECKPOINT: two or more are merged; see vernier merge --help");
-  if (flags.output.empty()) throw Error(ErrorKind::usage, "missing -o FILE (.exr); see vernier merge --help");
-  if (is_display_file(flags.output))
-    throw Error(ErrorKind::usage, {}, "-o", "a merged picture is scene-linear: name an .exr");
+  if (flags.output.empty())
+    throw Error(ErrorKind::usage, "missing -o FILE (.exr, .png, .jpg); see vernier merge --help");
   const std::vector<Layer> chosen = find_film_layers(flags.layers);
   check_writable_image(flags.output);
+  const DisplayOptions display =
+      is_display_file(flags.output) ? with_chosen_view(flags.display) : flags.display;
   const ThreadLimit threads(flags.threads);
   Merged merged;
   for (const auto& path : flags.inputs) merged.add(path);
   RenderResult& result = *merged.result;
   result.error = estimate_error(result.film);
   const LayeredImage picture = with_film_layers(result.film, chosen);
-  write_exr(flags.output, picture.image, picture.channel_names, merged_metadata(merged, command_line));
+  write_picture(flags.output, picture, merged_metadata(merged, command_line), display);
   if (!flags.quiet)
     fmt::print("{}\n",
                one_line(fmt::format("wrote {}: {}x{}, {:.4g} spp of {} renders{}", flags.output,
@@ -109,11 +113,15 @@ void register_merge(Program& program) {
   auto flags = std::make_shared<MergeFlags>();
   command->add_option("CHECKPOINT", flags->inputs, "two or more, of 'vernier render --checkpoint'")
       ->type_name("");
-  command->add_option("-o,--output", flags->output, "picture of all their samples, .exr")->type_name("FILE");
+  command
+      ->add_option("-o,--output", flags->output,
+                   "picture of all their samples: .exr, or .png or .jpg for display")
+      ->type_name("FILE");
   command
       ->add_option("--aov,--layers", flags->layers,
                    "layers beside the colour: error, samples, variance, half")
       ->type_name("LIST");
+  add_display_flags(*command, flags->display);
   add_threads_flag(*command, flags->threads);
   command->add_flag("-q,--quiet", flags->quiet, "say nothing but errors");
   command->footer(

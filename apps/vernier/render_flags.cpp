@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "apps/vernier/display_flags.h"
 #include "apps/vernier/flags.h"
 #include "core/base/quantities.h"
 #include "core/denoise/denoise.h"
@@ -75,13 +76,7 @@ void add_output_flags(CLI::App& command, RenderFlags& flags) {
       .add_option("--denoise", flags.denoise,
                   "filter the noise out before writing; 'help' lists the filters (docs/denoise.md)")
       ->type_name("FILTER");
-  command.add_option("--exposure", flags.display.exposure, "stops, for PNG and JPEG")
-      ->transform(real_number(-100, 100))
-      ->type_name("EV");
-  command.add_option("--view", flags.display.view, "display view for PNG and JPEG; 'help' lists them")
-      ->type_name("NAME");
-  command.add_option("--ocio", flags.display.config, "OpenColorIO config ($OCIO, else a built-in one)")
-      ->type_name("FILE");
+  add_display_flags(command, flags.display);
   command.add_option("--stats", flags.stats, "write what was measured as JSON (docs/stats.md)")
       ->type_name("FILE");
   command
@@ -98,6 +93,14 @@ void add_output_flags(CLI::App& command, RenderFlags& flags) {
 template <typename Table>
 void print_table(const Table& table) {
   for (const auto& entry : table) fmt::print("{:<12} {}\n", entry.name, entry.description);
+}
+
+void print_accelerators(bool all) {
+  std::vector<AcceleratorEntry> shown;
+  for (const AcceleratorEntry& entry : accelerators())
+    if (all || !entry.for_study) shown.push_back(entry);
+  print_table(shown);
+  if (!all) fmt::print("'--accelerator help-all' lists more, to compare with and to test\n");
 }
 
 /// The table as --aov takes it: name, channels in the file, meaning.
@@ -142,20 +145,16 @@ void add_render_flags(CLI::App& command, RenderFlags& flags) {
 bool print_requested_list(const RenderFlags& flags) {
   if (flags.integrator == "help") {
     print_table(integrators());
-  } else if (flags.accelerator == "help") {
-    print_table(accelerators());
+  } else if (flags.accelerator == "help" || flags.accelerator == "help-all") {
+    print_accelerators(flags.accelerator == "help-all");
   } else if (flags.show == "help") {
     for (const auto& name : raycast_shows()) fmt::print("{}\n", name);
   } else if (flags.denoise == "help") {
     print_table(denoisers());
   } else if (flags.layers == "help") {
     print_layers();
-  } else if (flags.display.view == "help") {
-    DisplayOptions display = flags.display;
-    display.view.clear();
-    for (const auto& name : display_views(display)) fmt::print("{}\n", name);
   } else {
-    return false;
+    return print_requested_views(flags.display);
   }
   return true;
 }

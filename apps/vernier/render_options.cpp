@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "apps/vernier/denoising.h"
+#include "apps/vernier/display_flags.h"
 #include "apps/vernier/flags.h"
 #include "core/base/atomic_file.h"
 #include "core/base/names.h"
@@ -81,16 +82,10 @@ DisplayOptions choose_display(const RenderFlags& flags) {
   DisplayOptions display = flags.display;
   const bool needed = !display.view.empty() || !display.config.empty() || !flags.report.empty();
   if (!needed && std::none_of(flags.outputs.begin(), flags.outputs.end(), is_display_file)) return display;
-  const std::vector<std::string> views = display_views(display);
-  if (!display.view.empty()) {
-    display.view = find_by_prefix("view", display.view, views);
-    return display;
-  }
-  display.view = views.front();
-  if (flags.integrator == "raycast")
-    for (const auto& view : views)
+  if (display.view.empty() && flags.integrator == "raycast")
+    for (const auto& view : display_views(display))
       if (equal_ignoring_case(view, "raw")) display.view = view;
-  return display;
+  return with_chosen_view(display);
 }
 
 /// A render may go on in the checkpoint that it came from.

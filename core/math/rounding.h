@@ -17,8 +17,13 @@ constexpr float gamma_bound(int n) {
   return static_cast<float>(n) * unit_roundoff / (1 - static_cast<float>(n) * unit_roundoff);
 }
 
-inline float next_float_up(float v) { return std::nextafter(v, std::numeric_limits<float>::infinity()); }
-inline float next_float_down(float v) { return std::nextafter(v, -std::numeric_limits<float>::infinity()); }
+/// The next larger float; NaN and infinity stay. What std::nextafter gives, without a call: each ray needs it.
+inline float next_float_up(float v) {
+  if (!(v < std::numeric_limits<float>::infinity())) return v;
+  const auto bits = std::bit_cast<int32_t>(v + 0.f);  // of -0 makes 0
+  return std::bit_cast<float>(bits + (bits < 0 ? -1 : 1));
+}
+inline float next_float_down(float v) { return -next_float_up(-v); }
 
 /// Ray origin beside a surface point p known to within +-error per axis: p moved along the unit normal n far
 /// enough that the true surface cannot lie between, to the side that `direction` leaves by (Pharr, Jakob,

@@ -18,8 +18,10 @@ namespace vernier {
 
 using Float4 = float __attribute__((vector_size(16)));
 using Float8 = float __attribute__((vector_size(32)));
+using Double4 = double __attribute__((vector_size(32)));
 using Mask4 = int32_t __attribute__((vector_size(16)));  ///< lanes are 0 or -1
 using Mask8 = int32_t __attribute__((vector_size(32)));
+using DoubleMask4 = int64_t __attribute__((vector_size(32)));
 
 /// Bit i is lane i.
 inline unsigned lane_bits(const Mask4& mask) {
@@ -32,6 +34,8 @@ inline unsigned lane_bits(const Mask4& mask) {
 #endif
 }
 
+inline unsigned lane_bits(const DoubleMask4& mask) { return lane_bits(__builtin_convertvector(mask, Mask4)); }
+
 inline unsigned lane_bits(const Mask8& mask) {
 #ifdef __AVX__
   return static_cast<unsigned>(_mm256_movemask_ps(std::bit_cast<__m256>(mask)));
@@ -41,6 +45,10 @@ inline unsigned lane_bits(const Mask8& mask) {
   return bits;
 #endif
 }
+
+inline Double4 widened(const Float4& x) { return __builtin_convertvector(x, Double4); }
+/// Rounded.
+inline Float4 narrowed(const Double4& x) { return __builtin_convertvector(x, Float4); }
 
 /// Index of the lowest bit that is set.
 inline unsigned lowest(unsigned bits) { return static_cast<unsigned>(std::countr_zero(bits)); }

@@ -67,8 +67,9 @@ inline uint32_t mix_bits(uint64_t v) {
 
 inline double Sampler::next1_fine() {
   const uint64_t digits = next_digits();
-  const uint64_t further = mix_bits((digits << 32) ^ (block_hash_ + dimension_));
-  return double((digits << 21) | (further >> 11)) * 0x1p-53;
+  // The digits are well mixed already: a product spreads them and the block over those that it adds.
+  const uint64_t further = ((uint64_t(block_hash_ + dimension_) << 32) ^ digits) * 0x9e3779b97f4a7c15ull;
+  return double((digits << 21) | (further >> 43)) * 0x1p-53;
 }
 
 }  // namespace vernier

@@ -8,7 +8,6 @@ namespace vernier {
 /// A triangle as a point sees it, for sampling it uniformly by solid angle.
 class SphericalTriangle {
  public:
-  SphericalTriangle() = default;
   /// Corners relative to the point; `normal` is cross(b - a, c - a). Seen edge-on, or from one of its
   /// corners, the triangle has no solid angle.
   SphericalTriangle(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& normal)

@@ -100,6 +100,7 @@ struct AcceleratorEntry {
   std::string_view description;
   Watertight watertight;
   std::unique_ptr<Accelerator> (*build)(const Geometry&);
+  bool for_study = false;  ///< to compare with and to test, of no use to render with
 };
 
 /// All accelerators, the default first (scene/accel/registry.cpp).

@@ -17,13 +17,13 @@ std::span<const AcceleratorEntry> accelerators() {
           "bvh", "our own, to check it: watertight at edges and vertices, the same answers on every machine",
           at_edges_and_vertices, build_bvh},
       AcceleratorEntry{"embree-fast", "Embree, fast mode: leaks at edges and vertices", nowhere,
-                       build_embree_fast},
+                       build_embree_fast, true},
       AcceleratorEntry{"bvh-moeller", "our own with the Moeller-Trumbore test: leaks at edges and vertices",
-                       nowhere, build_bvh_moeller},
+                       nowhere, build_bvh_moeller, true},
       AcceleratorEntry{"octree", "triangles in every cell they touch, to compare with", at_edges_and_vertices,
-                       build_octree},
+                       build_octree, true},
       AcceleratorEntry{"brute_force", "every triangle for every ray, for tests", at_edges_and_vertices,
-                       build_brute_force},
+                       build_brute_force, true},
   };
   return table;
 }

@@ -50,45 +50,37 @@ struct ShearedRay {
   }
 };
 
-/// Barycentric weights of the point (0, 0) in the triangle a, b, c of the plane; empty when it is outside.
-/// Computed in double, where the products of floats are exact and so the signs of the edge functions are
-/// those of the real numbers.
-inline std::optional<Vec3f> barycentrics_in_double(const Vec2f& a, const Vec2f& b, const Vec2f& c) {
-  const auto edge = [](const Vec2f& p, const Vec2f& q) { return double(p.x) * q.y - double(p.y) * q.x; };
-  const double u = edge(c, b), v = edge(a, c), w = edge(b, a), det = u + v + w;
-  if (!((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0)) || det == 0) return {};
-  return Vec3f(float(u / det), float(v / det), float(w / det));
-}
+/// The sheared vertices of a triangle.
+struct ShearedTriangle {
+  Vec3f a, b, c;
+
+  /// Where (0, 0) lies in the projected triangle, and the depth there over dz; empty when it is outside. In
+  /// double, where the products of floats are exact: so the signs of the edge functions are those of the real
+  /// numbers, and the weights of a sliver's far corners do not drown the depth between them.
+  std::optional<TriangleHit> hit(float dz) const {
+    const auto edge = [](const Vec3f& p, const Vec3f& q) { return double(p.x) * q.y - double(p.y) * q.x; };
+    const double u = edge(c, b), v = edge(a, c), w = edge(b, a), det = u + v + w;
+    if (!((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0)) || det == 0) return {};
+    const double inverse = 1 / (det * dz), inv_det = inverse * dz;
+    return TriangleHit{float((u * a.z + v * b.z + w * c.z) * inverse), float(v * inv_det),
+                       float(w * inv_det)};
+  }
+};
 
 /// Woop, Benthin, Wald 2013, "Watertight Ray/Triangle Intersection", JCGT 2(1). The vertices are sheared into
 /// the ray's frame, each by the same operations whichever triangle it belongs to; after that the edge
 /// functions have exact signs: the rounded products of a float difference compare as the exact ones do or
 /// equal, and then double decides. So of the triangles around an edge or vertex that the ray meets from one
-/// side, at least one is hit. Departures from the paper: both sides count, and the weights are divided by
-/// their sum before they weigh t, so that only squares of lengths may overflow, not cubes. triangle_block.h
-/// has the same operations on four triangles.
+/// side, at least one is hit. Departures from the paper: both sides count, and what is hit is weighed in
+/// double. triangle_block.h has the same operations on four triangles.
 inline std::optional<TriangleHit> intersect_watertight(const ShearedRay& ray, const Vec3f& v0,
                                                        const Vec3f& v1, const Vec3f& v2) {
-  const Vec3f a = v0 - ray.origin, b = v1 - ray.origin, c = v2 - ray.origin;
-  const float az = a[ray.kz], bz = b[ray.kz], cz = c[ray.kz];
-  const float ax = a[ray.kx] - ray.sx * az, ay = a[ray.ky] - ray.sy * az;
-  const float bx = b[ray.kx] - ray.sx * bz, by = b[ray.ky] - ray.sy * bz;
-  const float cx = c[ray.kx] - ray.sx * cz, cy = c[ray.ky] - ray.sy * cz;
-  float u = cx * by - cy * bx, v = ax * cy - ay * cx, w = bx * ay - by * ax;
-  if (u == 0 || v == 0 || w == 0) {
-    const auto weights = barycentrics_in_double({ax, ay}, {bx, by}, {cx, cy});
-    if (!weights) return {};
-    u = weights->x;
-    v = weights->y;
-    w = weights->z;
-  } else {
-    if (!((u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0))) return {};
-    const float inv_det = 1 / (u + v + w);
-    u *= inv_det;
-    v *= inv_det;
-    w *= inv_det;
-  }
-  return TriangleHit{(u * az + v * bz + w * cz) / ray.dz, v, w};
+  const auto sheared = [&](const Vec3f& vertex) {
+    const Vec3f v = vertex - ray.origin;
+    const float z = v[ray.kz];
+    return Vec3f(v[ray.kx] - ray.sx * z, v[ray.ky] - ray.sy * z, z);
+  };
+  return ShearedTriangle{sheared(v0), sheared(v1), sheared(v2)}.hit(ray.dz);
 }
 
 /// Whether rays can hit the triangle at all: finite vertices and an area. The products are exact unless

@@ -13,6 +13,11 @@ struct alignas(64) TriangleBlock {
   uint32_t instance[lanes], primitive[lanes];
 };
 
+/// Of four triangles, sheared.
+struct Corner4 {
+  Float4 x, y, z;
+};
+
 struct BlockHits {
   Float4 t, u, v;
 };
@@ -32,6 +37,18 @@ struct MoellerTrumboreTest {
   static unsigned test(const TriangleBlock& block, const Ray& ray, float t_min, float t_max, BlockHits& hits);
 };
 
+/// ShearedTriangle::hit() lane by lane.
+inline unsigned weigh(const Corner4& a, const Corner4& b, const Corner4& c, double dz, BlockHits& hits) {
+  const Double4 ax = widened(a.x), ay = widened(a.y), bx = widened(b.x), by = widened(b.y), cx = widened(c.x),
+                cy = widened(c.y);
+  const Double4 u = cx * by - cy * bx, v = ax * cy - ay * cx, w = bx * ay - by * ax, det = u + v + w;
+  const Double4 inverse = 1 / (det * dz), inv_det = inverse * dz;
+  hits.t = narrowed((u * widened(a.z) + v * widened(b.z) + w * widened(c.z)) * inverse);
+  hits.u = narrowed(v * inv_det);
+  hits.v = narrowed(w * inv_det);
+  return lane_bits((((u >= 0) & (v >= 0) & (w >= 0)) | ((u <= 0) & (v <= 0) & (w <= 0))) & (det != 0));
+}
+
 /// intersect_watertight() lane by lane, to the bit.
 inline unsigned WatertightTest::test(const TriangleBlock& block, const Ray& ray, float t_min, float t_max,
                                      BlockHits& hits) {
@@ -44,28 +61,12 @@ inline unsigned WatertightTest::test(const TriangleBlock& block, const Ray& ray,
                by = (block.vertex[1][ray.ky] - oy) - ray.sy * bz;
   const Float4 cx = (block.vertex[2][ray.kx] - ox) - ray.sx * cz,
                cy = (block.vertex[2][ray.ky] - oy) - ray.sy * cz;
-  Float4 u = cx * by - cy * bx, v = ax * cy - ay * cx, w = bx * ay - by * ax;
-  const Mask4 all_positive = (u > 0) & (v > 0) & (w > 0), all_negative = (u < 0) & (v < 0) & (w < 0);
-  Mask4 inside = all_positive | all_negative;
-  const Mask4 undecided = (u == 0) | (v == 0) | (w == 0);
-  const unsigned undecided_bits = lane_bits(undecided);
-  if ((lane_bits(inside) | undecided_bits) == 0) return 0;
-  const Float4 inv_det = 1 / (u + v + w);
-  u *= inv_det;
-  v *= inv_det;
-  w *= inv_det;
-  if (undecided_bits) [[unlikely]] {
-    for (unsigned i = 0; i < TriangleBlock::lanes; ++i) {
-      if (!(undecided_bits >> i & 1)) continue;
-      const auto weights = barycentrics_in_double({ax[i], ay[i]}, {bx[i], by[i]}, {cx[i], cy[i]});
-      inside[i] = weights ? -1 : 0;
-      if (weights) u[i] = weights->x, v[i] = weights->y, w[i] = weights->z;
-    }
-  }
-  hits.t = (u * az + v * bz + w * cz) / ray.dz;
-  hits.u = v;
-  hits.v = w;
-  return lane_bits(inside & (hits.t > t_min) & (hits.t <= t_max));
+  const Float4 u = cx * by - cy * bx, v = ax * cy - ay * cx, w = bx * ay - by * ax;
+  // Where products overflow, nothing is outside yet.
+  const Mask4 outside = ((u > 0) | (v > 0) | (w > 0)) & ((u < 0) | (v < 0) | (w < 0));
+  if (lane_bits(~outside) == 0) return 0;
+  return weigh({ax, ay, az}, {bx, by, bz}, {cx, cy, cz}, ray.dz, hits) &
+         lane_bits((hits.t > t_min) & (hits.t <= t_max));
 }
 
 /// intersect_moeller_trumbore() lane by lane, to the bit.

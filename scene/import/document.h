@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <tiny_gltf.h>
-
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "scene/import/asset_files.h"
+#include "scene/import/tinygltf.h"
 #include "vernier/error.h"
 
 // Only sources under scene/import include this header, since it brings tinygltf in.

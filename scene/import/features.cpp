@@ -2,10 +2,11 @@
 #include "scene/import/features.h"
 
 #include <fmt/format.h>
-#include <tiny_gltf.h>
 
 #include <algorithm>
 #include <string_view>
+
+#include "scene/import/tinygltf.h"
 
 namespace vernier {
 namespace {

@@ -32,6 +32,9 @@ constexpr float slack = 0x1p-8f;
 /// Keeps the sum of eight slots finite.
 constexpr float least_distance2 = 1e-30f;
 
+/// Of what may be lit, however faint a light is beside others.
+constexpr float least_importance = std::numeric_limits<float>::min();
+
 }  // namespace
 
 void LightNode::set(int slot, const LightBounds& bounds) {
@@ -39,7 +42,8 @@ void LightNode::set(int slot, const LightBounds& bounds) {
   center_x_[slot] = center.x;
   center_y_[slot] = center.y;
   center_z_[slot] = center.z;
-  radius2_[slot] = square(bounding_radius(bounds.box, center)) * (1 + 1e-6f);
+  const float radius2 = square(bounding_radius(bounds.box, center)) * (1 + 1e-6f);
+  radius2_[slot] = radius2;
   const bool has_axis = std::abs(length_squared(bounds.axis) - 1) < 1e-3f;
   const float cos_spread = has_axis ? bounds.cos_spread : -1;
   axis_x_[slot] = has_axis ? bounds.axis.x : 0;
@@ -49,6 +53,10 @@ void LightNode::set(int slot, const LightBounds& bounds) {
   sin_spread_[slot] = safe_sqrt(1 - square(cos_spread));
   cos_emission_[slot] = bounds.cos_emission - slack;
   power_[slot] = bounds.power;
+  // Inside the sphere distance and direction mean little; its radius keeps one near light from taking all. A
+  // place without extent does not light itself.
+  if (radius2 > 0)
+    inside_[slot] = std::max(bounds.power / std::max(radius2, least_distance2), least_importance);
   two_sided_[slot] = bounds.two_sided ? -1 : 0;
 }
 
@@ -83,14 +91,8 @@ Float8 LightNode::importance(const LightReceiver& receiver) const {
     value *= cos_incident;
   }
 
-  // Inside the sphere distance and direction mean little; its radius keeps one near light from taking all.
-  Float8 near = radius2_;
-  keep_greater(Float8{} + least_distance2, near);
-  value = outside ? value : power_ / near;
-  // However faint a light is beside others.
-  keep_greater(Float8{} + std::numeric_limits<float>::min(), value);
-  // A place without extent does not light itself.
-  return ((outside ? lit : radius2_ > 0) & (power_ > 0)) ? value : Float8{};
+  keep_greater(Float8{} + least_importance, value);
+  return outside ? (lit ? value : Float8{}) : inside_;
 }
 
 }  // namespace vernier

@@ -28,7 +28,9 @@ class alignas(64) LightNode {
  private:
   Float8 center_x_{}, center_y_{}, center_z_{}, radius2_{};  ///< of the sphere about the box
   Float8 axis_x_{}, axis_y_{}, axis_z_{};
-  Float8 cos_spread_{}, sin_spread_{}, cos_emission_{}, power_{};
+  Float8 cos_spread_{}, sin_spread_{}, power_{};
+  Float8 cos_emission_ = Float8{} + 2;  ///< of slots that are not set more than any cosine
+  Float8 inside_{};                     ///< importance to receivers within the sphere
   Mask8 two_sided_{};
 };
 

@@ -21,46 +21,45 @@ class TriangleLight::View {
     is_dark_ = !light.material_->double_sided() && !(dot(from - a, light.normal_) > 0);
     const Vec3f center = light.opposite_ ? (b + c) * 0.5f : (a + b + c) * (1 / 3.f);
     if (is_dark_ || length_squared(center - from) > light.near2_) return;
-    is_near_ = true;
-    first_ = SphericalTriangle(a - from, b - from, c - from, doubled_area(a, b, c));
-    solid_angle_ = first_.solid_angle();
+    first_.emplace(a - from, b - from, c - from, doubled_area(a, b, c));
+    solid_angle_ = first_->solid_angle();
     if (!light.opposite_) return;
     // Its arcs go on where those of the first end.
     const Vec3f& d = *light.opposite_;
-    second_ = SphericalTriangle(c - from, b - from, d - from, doubled_area(c, b, d));
-    solid_angle_ += second_.solid_angle();
+    second_.emplace(c - from, b - from, d - from, doubled_area(c, b, d));
+    solid_angle_ += second_->solid_angle();
   }
 
   /// Whether it certainly sends no light here.
-  bool is_dark() const { return is_dark_ || (is_near_ && solid_angle_ == 0); }
+  bool is_dark() const { return is_dark_ || (first_ && solid_angle_ == 0); }
 
   /// Barycentrics of the second and third corner; beyond the line between them in a parallelogram's other
   /// half.
   Vec2f sample(const Vec2f& u) const {
-    if (!is_near_) {
+    if (!first_) {
       if (light_.opposite_) return u;
       float pdf = 1;
       return sample_triangle(light_.texture_.empty() ? u : light_.texture_.sample(u, pdf));
     }
-    if (!light_.opposite_) return first_.sample(u);
-    const float share = first_.solid_angle() / solid_angle_;
-    if (u.x < share) return first_.sample({u.x / share, u.y});
-    const Vec2f other = second_.sample({(u.x - share) / (1 - share), u.y});
+    if (!light_.opposite_) return first_->sample(u);
+    const float share = first_->solid_angle() / solid_angle_;
+    if (u.x < share) return first_->sample({u.x / share, u.y});
+    const Vec2f other = second_->sample({(u.x - share) / (1 - share), u.y});
     return {other.x + other.y, 1 - other.x};
   }
 
   /// Density per solid angle of a place at that distance whose normal makes that angle; 0: never drawn.
   float pdf(const Vec2f& place, float distance2, float cosine) const {
     if (is_dark() || cosine == 0) return 0;
-    if (is_near_) return 1 / solid_angle_;
+    if (first_) return 1 / solid_angle_;
     const float by_area = distance2 / (cosine * light_.area_);
     return light_.texture_.empty() ? by_area : by_area * light_.texture_.pdf(invert_sample_triangle(place));
   }
 
  private:
   const TriangleLight& light_;
-  bool is_dark_ = false, is_near_ = false;
-  SphericalTriangle first_, second_;
+  bool is_dark_ = false;
+  std::optional<SphericalTriangle> first_, second_;  ///< of near lights
   float solid_angle_ = 0;
 };
 
@@ -79,11 +78,13 @@ TriangleLight::TriangleLight(const SceneGeometry& geometry, const Material& mate
   // The bound is linear in the barycentrics, so it is largest at a corner.
   error_ = max(first.error, max(geometry.surface_point(instance, primitive, {1, 0}).error,
                                 geometry.surface_point(instance, primitive, {0, 1}).error));
+  if (material.emits_evenly())
+    even_ = {{material.emission({}, false, 1), material.emission({}, true, 1)}, material.coverage({})};
   measure_emission();
 }
 
 bool TriangleLight::join(const TriangleLight& other) {
-  if (!material_->emits_evenly() || opposite_ || other.opposite_) return false;
+  if (!even_ || opposite_ || other.opposite_) return false;
   for (size_t i = 0; i < 3; ++i)
     for (size_t j = 0; j < 3; ++j) {
       const Vec3f a = corners_[i], b = corners_[(i + 1) % 3], c = corners_[(i + 2) % 3];
@@ -117,13 +118,13 @@ TriangleId TriangleLight::triangle_at(const Vec2f& place) const {
 }
 
 Rgb TriangleLight::emission(const Vec2f& barycentrics, bool front, const Vec3f& wo) const {
-  if (material_->emits_evenly()) return material_->emission({}, front, 1);
+  if (even_) return even_->emission[front];
   const SurfacePoint point = geometry_->surface_point(instance_, primitive_, barycentrics);
   return vernier::emission(*geometry_, *material_, point, front, wo);
 }
 
 float TriangleLight::coverage(const Vec2f& barycentrics) const {
-  if (material_->is_opaque()) return 1;
+  if (even_) return even_->coverage;
   return vernier::coverage(*geometry_, *material_,
                            geometry_->surface_point(instance_, primitive_, barycentrics));
 }
@@ -179,7 +180,7 @@ void TriangleLight::measure_emission() {
       material_->emissive_texels({attributes({0, 0}), attributes({1, 0}), attributes({0, 1})});
   // Two texels a side of a cell, and as many readings.
   const int cells = texels > 4 ? int(std::sqrt(std::min(texels / 4, limit))) : 1;
-  const int steps = material_->emits_evenly() ? 1 : std::max(2, 12 / cells);  // readings across a cell
+  const int steps = even_ ? 1 : std::max(2, 12 / cells);  // readings across a cell
   std::vector<float> values(size_t(cells) * cells);
   double sum = 0, squares = 0;
   for (int y = 0; y < cells; ++y)

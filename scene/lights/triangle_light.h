@@ -32,9 +32,16 @@ class TriangleLight : public Light {
   float coverage(const Vec2f& barycentrics) const;
   void measure_emission();
 
+  /// Of a material that emits the same at every point.
+  struct EvenEmission {
+    std::array<Rgb, 2> emission;  ///< of the back and of the front
+    float coverage = 1;
+  };
+
   const SceneGeometry* geometry_;
   const Material* material_;
   uint32_t instance_, primitive_;
+  std::optional<EvenEmission> even_;
   std::array<Vec3f, 3> corners_;   ///< world, counter-clockwise seen from the front
   std::optional<Vec3f> opposite_;  ///< of a parallelogram: the corner that lies across from the first
   uint32_t opposite_primitive_ = 0;

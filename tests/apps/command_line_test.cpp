@@ -125,7 +125,9 @@ TEST(CommandLine, HelpAndVersion) {
 TEST(CommandLine, ListsOnRequestWithoutAScene) {
   EXPECT_THAT(run_vernier({"render", "--integrator", "help"}).out,
               testing::AllOf(HasSubstr("raycast"), HasSubstr("whitted"), HasSubstr("path")));
-  EXPECT_THAT(run_vernier({"render", "--accelerator", "help"}).out, HasSubstr("embree"));
+  EXPECT_THAT(run_vernier({"render", "--accelerator", "help"}).out,
+              testing::AllOf(HasSubstr("embree"), HasSubstr("bvh"), testing::Not(HasSubstr("brute_force"))));
+  EXPECT_THAT(run_vernier({"render", "--accelerator", "help-all"}).out, HasSubstr("brute_force"));
   EXPECT_THAT(run_vernier({"render", "--view", "help"}).out, HasSubstr("ACES SDR"));
   EXPECT_THAT(run_vernier({"render", "--show", "help"}).out, HasSubstr("barycentric"));
 }

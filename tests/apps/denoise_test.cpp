@@ -141,7 +141,7 @@ TEST_F(DenoiseCommand, UsageErrors) {
     EXPECT_EQ(absent.exit_code, 2);
     EXPECT_THAT(absent.err, HasSubstr("this build has no filter 'oidn': install Open Image Denoise"));
   }
-  EXPECT_EQ(denoise("a.exr", "b.png").exit_code, 2);
+  EXPECT_EQ(denoise("a.exr", "b.png", {"--view", "filmic"}).exit_code, 2);
   EXPECT_EQ(denoise("a.png", "b.exr").exit_code, 3);
   EXPECT_EQ(denoise("missing.exr", "b.exr").exit_code, 3);
   EXPECT_EQ(run_vernier({"denoise", "--filter", "help"}).exit_code, 0);

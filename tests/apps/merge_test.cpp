@@ -96,7 +96,7 @@ TEST_F(MergeCommand, Refuses) {
   EXPECT_EQ(run_vernier({"merge", folder_.file("a.ckpt"), folder_.file("larger.ckpt"), "-o",
                          folder_.file("merged.png")})
                 .exit_code,
-            2);
+            3);
   EXPECT_THAT(folder_.names(), testing::Not(testing::Contains(HasSubstr("merged"))));
 }
 

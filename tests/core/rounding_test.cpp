@@ -35,6 +35,24 @@ TEST(Rounding, NeighbouringFloats) {
   EXPECT_LT(next_float_down(0), 0);
 }
 
+TEST(Rounding, NeighboursAreThoseOfTheStandardLibrary) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  constexpr uint32_t special[]{0,          1,          0x80000000, 0x80000001, 0x7f7fffff,
+                               0x7f800000, 0xff7fffff, 0xff800000, 0x00800000, 0x007fffff};
+  test::Random random(5);
+  const auto expect_neighbours = [&](uint32_t bits) {
+    const float v = std::bit_cast<float>(bits);
+    if (std::isnan(v)) {
+      EXPECT_TRUE(std::isnan(next_float_up(v)) && std::isnan(next_float_down(v)));
+      return;
+    }
+    EXPECT_EQ(next_float_up(v), std::nextafter(v, infinity)) << v;
+    EXPECT_EQ(next_float_down(v), std::nextafter(v, -infinity)) << v;
+  };
+  for (const uint32_t bits : special) expect_neighbours(bits);
+  for (int trial = 0; trial < 100'000; ++trial) expect_neighbours(uint32_t(random.next1() * 0x1p24f) << 8 | uint32_t(random.next1() * 0x1p8f));
+}
+
 // However the true surface point lies in the error box, the origin is on the side of the plane that the ray
 // leaves by, in exact arithmetic (doubles hold these products exactly enough: 48 bits and a margin far above
 // 1e-16).

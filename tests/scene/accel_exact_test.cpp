@@ -3,6 +3,8 @@
 
 #include "apps/validation/exact.h"
 #include "apps/validation/soup.h"
+#include "core/math/frame.h"
+#include "core/sampling/warp.h"
 #include "scene/accel/triangle_block.h"
 #include "scene/accel/triangle_set.h"
 #include "tests/support/effort.h"
@@ -96,6 +98,28 @@ TEST(TriangleTests, AgreeWithExactArithmetic) {
     }
   }
   EXPECT_GT(hits, cases / 2);
+}
+
+// Needles 4 m long and half a millimetre wide, met at a hundredth of a radian from a millimetre above: the
+// distances of their corners are thousands of times that of the hit.
+TEST(TriangleTests, NeedlesAreMetWhereTheyAre) {
+  Dice dice(7, 0);
+  for (int i = 0; i < 20'000; ++i) {
+    const Vec3f along = sample_sphere({dice.uniform(0, 1), dice.uniform(0, 1)});
+    const auto [across, up, unused] = Frame::from_normal(along);
+    const Vec3f corner(dice.uniform(0, 1) - 2, dice.uniform(0, 1), dice.uniform(0, 1) - 1);
+    const Corners c{corner, corner + along * 4, corner + along * (4 * dice.uniform(0, 1)) + across * 5e-4f};
+    const float v = 0.25f + dice.uniform(0, 1) / 2, u = (1 - v) * dice.uniform(0, 1);
+    const Vec3f on = c[0] * (1 - u - v) + c[1] * u + c[2] * v;
+    Ray ray;
+    ray.origin = on - (along + across) * 0.07f + up * 1e-3f;
+    ray.direction = on - ray.origin;
+    const ExactHit exact = intersect_exactly(ray, c);
+    if (exact.kind != Kind::hit || is_near_boundary(ray, c)) continue;
+    const auto hit = intersect_watertight(ShearedRay(ray.origin, ray.direction), c[0], c[1], c[2]);
+    ASSERT_TRUE(hit) << i;
+    ASSERT_NEAR(hit->t, exact.t, 1e-3) << i;
+  }
 }
 
 /// The block's answer for its one triangle in each lane against the plain function's, to the bit.

@@ -117,7 +117,7 @@ std::vector<LightBounds> field(int side) {
 // Each leaf of a deep tree is picked as often as is told. That u is stretched at each level takes digits from
 // it in proportion: what is left of its 53 is told by 2^-52 over the probability.
 TEST(LightTree, GivesEachOfVeryManyLightsItsProbability) {
-  const std::vector<LightBounds> lights = field(300 / thinning);
+  const std::vector<LightBounds> lights = field(300);
   const LightTree tree(lights);
   const LightReceiver receiver{{17.3f, -2, 110.8f}, {0, 1, 0}};
   const auto pick = [&](double u) { return tree.sample(receiver, u).light; };

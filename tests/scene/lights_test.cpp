@@ -354,8 +354,8 @@ TEST(EnvironmentLight, SkyBesideASunIsSampledWithoutBias) {
   const double all_around = 2 * std::numbers::pi * mean;
   EXPECT_GT(mean_p_value(above, all_around * (1 - top)), 1e-4);
   EXPECT_GT(mean_p_value(beside, all_around * left * (top - bottom)), 1e-4);
-  EXPECT_LT(above.standard_error(), 0.01 * above.mean());
-  EXPECT_LT(beside.standard_error(), 0.03 * beside.mean());
+  EXPECT_LT(above.standard_error(), 0.01 * coarsening * above.mean());
+  EXPECT_LT(beside.standard_error(), 0.03 * coarsening * beside.mean());
 }
 
 // One texel of 10^6: samples go there, and their mean weight is its irradiance with hardly any noise.

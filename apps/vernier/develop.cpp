@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "apps/vernier/commands.h"
+#include "apps/vernier/denoising.h"
+#include "apps/vernier/display_flags.h"
+#include "apps/vernier/flags.h"
+#include "apps/vernier/messages.h"
+#include "apps/vernier/outputs.h"
+#include "core/base/parallel.h"
+#include "integrators/render/picture.h"
+#include "vernier/error.h"
+
+namespace vernier::apps {
+namespace {
+
+struct DevelopFlags {
+  std::string input, denoise, layer;
+  std::vector<std::string> outputs;
+  DisplayOptions display;
+  unsigned threads = 0;
+  bool quiet = false;
+};
+
+/// The layer `name` in place of the colour.
+Image layer_as_color(const LayeredImage& picture, const std::string& name, const std::string& path) {
+  if (const auto layer = picture.layer(name)) return *layer;
+  const auto single = picture.single(name);
+  if (!single)
+    throw Error(ErrorKind::usage, path, "--layer",
+                fmt::format("has no layer '{}'; there are the channels {}", name,
+                            fmt::join(picture.channel_names, ", ")));
+  Image grey(single->width, single->height, 3);
+  for (size_t i = 0; i < grey.values.size(); ++i) grey.values[i] = single->values[i / 3];
+  return grey;
+}
+
+void require_arguments(const DevelopFlags& flags) {
+  if (flags.input.empty()) throw Error(ErrorKind::usage, "missing IN (.exr); see vernier develop --help");
+  if (flags.outputs.empty())
+    throw Error(ErrorKind::usage, "missing -o FILE (.png, .jpg, .exr); see vernier develop --help");
+  if (!flags.layer.empty() && !flags.denoise.empty())
+    throw Error(ErrorKind::usage, {}, "--denoise", "filters the colour, and --layer shows something else");
+  std::vector<std::string> read{flags.input, flags.display.config};
+  require_separate_files(read, flags.outputs);
+  for (const auto& output : flags.outputs) check_writable_image(output);
+}
+
+ExitCode run_develop(const DevelopFlags& flags, const std::string& command_line) {
+  if (print_requested_views(flags.display)) return ExitCode::done;
+  require_arguments(flags);
+  const Denoiser* denoiser = flags.denoise.empty() ? nullptr : &find_denoiser(flags.denoise);
+  DisplayOptions display = flags.display;
+  if (std::any_of(flags.outputs.begin(), flags.outputs.end(), is_display_file))
+    display = with_chosen_view(display);
+  const ThreadLimit threads(flags.threads);
+
+  LayeredImage picture = read_layers(flags.input);
+  if (!picture.linear)
+    throw Error(ErrorKind::input, flags.input, {},
+                "holds display values already; expected scene-linear ones, as in .exr");
+  Metadata metadata = std::move(picture.metadata);
+  metadata["vernier:developCommand"] = command_line;
+  std::string done;
+  if (denoiser) {
+    const Denoised denoised = denoise(picture, *denoiser);
+    for (const auto& [name, value] : denoised_metadata(*denoiser, denoised.error)) metadata[name] = value;
+    picture = {denoised.picture, {"R", "G", "B"}, {}, true};
+    done = ", " + denoised_text(*denoiser, denoised.error);
+  } else {
+    picture = {flags.layer.empty() ? picture.rgb() : layer_as_color(picture, flags.layer, flags.input),
+               {"R", "G", "B"},
+               {},
+               true};
+  }
+
+  Outputs outputs;
+  for (const auto& output : flags.outputs) {
+    if (!outputs.attempt([&] { write_picture(output, picture, metadata, display); }) || flags.quiet) continue;
+    const std::string view = is_display_file(output) ? fmt::format(", view {}", display.view) : "";
+    fmt::print("{}\n", one_line(fmt::format("wrote {}: {}x{}{}{}", output, picture.image.width,
+                                            picture.image.height, view, done)));
+  }
+  return outputs.have_failed() ? ExitCode::input : ExitCode::done;
+}
+
+}  // namespace
+
+void register_develop(Program& program) {
+  CLI::App* command =
+      program.app.add_subcommand("develop", "Make a picture for display of a scene-linear one");
+  auto flags = std::make_shared<DevelopFlags>();
+  command->add_option("IN", flags->input, "scene-linear picture: rendered, denoised, merged")->type_name("");
+  command->add_option("-o,--output", flags->outputs, "picture: .png or .jpg; .exr stays scene-linear")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  add_display_flags(*command, flags->display);
+  command
+      ->add_option("--denoise", flags->denoise,
+                   "filter the noise out first; 'denoise --filter help' lists them")
+      ->type_name("FILTER");
+  command->add_option("--layer", flags->layer, "show this layer of the file instead of its colour")
+      ->type_name("NAME");
+  add_threads_flag(*command, flags->threads);
+  command->add_flag("-q,--quiet", flags->quiet, "say nothing but errors");
+  command->footer(
+      "Example: vernier develop a.exr -o a.png --exposure 1.5 --view neutral\n"
+      "         vernier develop a.exr -o a.png --denoise nlm");
+  command->callback([&program, flags] {
+    program.run = [&program, flags] { return run_develop(*flags, program.command_line); };
+  });
+}
+
+}  // namespace vernier::apps

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/vernier/display_flags.h"
+
+#include <fmt/format.h>
+
+#include "apps/vernier/flags.h"
+#include "core/base/names.h"
+
+namespace vernier::apps {
+
+void add_display_flags(CLI::App& command, DisplayOptions& options) {
+  command.add_option("--exposure", options.exposure, "stops, for PNG and JPEG")
+      ->transform(real_number(-100, 100))
+      ->type_name("EV");
+  command.add_option("--view", options.view, "display view for PNG and JPEG; 'help' lists them")
+      ->type_name("NAME");
+  command.add_option("--ocio", options.config, "OpenColorIO config ($OCIO, else a built-in one)")
+      ->type_name("FILE");
+}
+
+bool print_requested_views(const DisplayOptions& options) {
+  if (options.view != "help") return false;
+  for (const auto& name : display_views(options)) fmt::print("{}\n", name);
+  return true;
+}
+
+DisplayOptions with_chosen_view(DisplayOptions options) {
+  const std::vector<std::string> views = display_views(options);
+  options.view = options.view.empty() ? views.front() : find_by_prefix("view", options.view, views);
+  return options;
+}
+
+}  // namespace vernier::apps
