@@ -104,20 +104,19 @@ Interaction interaction_at(const Scene& scene, const Segment& segment, const Sur
   return crossing.interaction();
 }
 
-/// Where there are no volumes.
-std::optional<Interaction> intersect_in_air(const Scene& scene, const Ray& ray) {
-  std::optional<Interaction> at;
-  if (const auto point = scene.intersect(ray)) static_cast<SurfacePoint&>(at.emplace()) = *point;
-  return at;
+/// Whether light notices a surface within a medium, whatever the medium is.
+bool is_plain(const Scene& scene, const SurfacePoint& point, bool from_camera) {
+  return !bounds_volume(scene, point.instance) &&
+         (!from_camera || point.front || scene.material(point).double_sided());
 }
 
-std::optional<Interaction> intersect(const Scene& scene, Segment segment, bool from_camera) {
+/// The first surface that light notices, where `point` is the first of all.
+std::optional<Interaction> intersect_beyond(const Scene& scene, Segment segment,
+                                            std::optional<SurfacePoint> point, bool from_camera) {
   Ray& ray = segment.ray;
-  while (const auto point = scene.intersect(ray)) {
-    const Material& material = scene.material(*point);
+  for (; point; point = scene.intersect(ray)) {
+    if (is_plain(scene, *point, from_camera)) return Interaction{*point, segment.media, segment.media, {}};
     if (!bounds_volume(scene, point->instance)) {
-      if (!from_camera || point->front || material.double_sided())
-        return Interaction{*point, segment.media, segment.media, {}};
       // Go on behind the invisible side. Starting beyond the hit's own error keeps the parameter t of the
       // first ray.
       const float error = max_component(point->error) / length(ray.direction);
@@ -133,6 +132,14 @@ std::optional<Interaction> intersect(const Scene& scene, Segment segment, bool f
     }
   }
   return std::nullopt;
+}
+
+/// Nearly always the first surface of all is noticed, and nothing of the segment need be copied.
+std::optional<Interaction> intersect(const Scene& scene, const Segment& segment, bool from_camera) {
+  const auto point = scene.intersect(segment.ray);
+  if (!point) return std::nullopt;
+  if (is_plain(scene, *point, from_camera)) return Interaction{*point, segment.media, segment.media, {}};
+  return intersect_beyond(scene, segment, point, from_camera);
 }
 
 /// Fraction of light that a surface lets pass straight on; if it is bent there, what passes bent.
@@ -169,7 +176,6 @@ Segment camera_segment(const Scene& scene, const Ray& ray) {
 }
 
 std::optional<Interaction> intersect(const Scene& scene, const Segment& segment) {
-  if (scene.volumes().empty()) return intersect_in_air(scene, segment.ray);
   return intersect(scene, segment, false);
 }
 
@@ -220,7 +226,7 @@ Passage transmittance(const Scene& scene, const Segment& segment) {
 
 Shading shade(const Scene& scene, const Interaction& at, const Vec3f& wo, const Rgb& carried) {
   Encounter encounter{.front = at.front};
-  if (!scene.volumes().empty()) {
+  if (!at.before.empty() || !at.beyond.empty() || bounds_volume(scene, at.instance)) {
     encounter.channel = only_channel(carried);
     encounter.front = scene.volumes().is_met_from_outside(at);
     encounter.outside_ior = scene.volumes().medium(encounter.front ? at.before : at.beyond).ior;
