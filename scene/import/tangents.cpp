@@ -155,7 +155,7 @@ class TangentBuilder {
   /// Collects the triangles around a corner's vertex that are joined to it by edges and wind the same way.
   void grow_group(Corner seed) {
     const int group = int(groups_.size());
-    groups_.push_back({info_[seed.triangle].mirrored, {}});
+    groups_.push_back({info_[seed.triangle].mirrored, Vec3d(0, 0, 0)});
     const uint32_t centre = vertex(seed.triangle, seed.corner);
     std::vector<int> pending{int(seed.triangle)};
     while (!pending.empty()) {
