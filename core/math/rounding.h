@@ -17,7 +17,8 @@ constexpr float gamma_bound(int n) {
   return static_cast<float>(n) * unit_roundoff / (1 - static_cast<float>(n) * unit_roundoff);
 }
 
-/// The next larger float; NaN and infinity stay. What std::nextafter gives, without a call: each ray needs it.
+/// The next larger float; NaN and infinity stay. What std::nextafter gives, without a call: each ray needs
+/// it.
 inline float next_float_up(float v) {
   if (!(v < std::numeric_limits<float>::infinity())) return v;
   const auto bits = std::bit_cast<int32_t>(v + 0.f);  // of -0 makes 0

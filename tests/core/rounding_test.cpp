@@ -50,7 +50,8 @@ TEST(Rounding, NeighboursAreThoseOfTheStandardLibrary) {
     EXPECT_EQ(next_float_down(v), std::nextafter(v, -infinity)) << v;
   };
   for (const uint32_t bits : special) expect_neighbours(bits);
-  for (int trial = 0; trial < 100'000; ++trial) expect_neighbours(uint32_t(random.next1() * 0x1p24f) << 8 | uint32_t(random.next1() * 0x1p8f));
+  for (int trial = 0; trial < 100'000; ++trial)
+    expect_neighbours(uint32_t(random.next1() * 0x1p24f) << 8 | uint32_t(random.next1() * 0x1p8f));
 }
 
 // However the true surface point lies in the error box, the origin is on the side of the plane that the ray
