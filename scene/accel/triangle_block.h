@@ -46,7 +46,9 @@ inline unsigned weigh(const Corner4& a, const Corner4& b, const Corner4& c, doub
   hits.t = narrowed((u * widened(a.z) + v * widened(b.z) + w * widened(c.z)) * inverse);
   hits.u = narrowed(v * inv_det);
   hits.v = narrowed(w * inv_det);
-  return lane_bits((((u >= 0) & (v >= 0) & (w >= 0)) | ((u <= 0) & (v <= 0) & (w <= 0))) & (det != 0));
+  const DoubleMask4 positive = (u >= 0) & (v >= 0) & (w >= 0), negative = (u <= 0) & (v <= 0) & (w <= 0);
+  const DoubleMask4 inside = (positive | negative) & (det != 0);
+  return lane_bits(inside);
 }
 
 /// intersect_watertight() lane by lane, to the bit.
