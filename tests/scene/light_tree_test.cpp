@@ -107,7 +107,8 @@ std::vector<LightBounds> field(int side) {
   for (int i = 0; i < side * side; ++i) {
     LightBounds light = cone({0, 1, 0}, pi);
     light.box = {};
-    light.box.add(Vec3f(float(i % side), random.next1(), float(i / side)));
+    const int row = i / side, column = i % side;
+    light.box.add(Vec3f(float(column), random.next1(), float(row)));
     light.power = std::pow(10.f, 12 * random.next1() - 6);
     lights.push_back(light);
   }
