@@ -29,11 +29,7 @@ LayeredImage color_and_reliability(const LayeredImage& noisy) {
 }
 
 ExitCode run_denoise(const DenoiseFlags& flags, const std::string& command_line) {
-  if (flags.filter == "help") {
-    for (const Denoiser& entry : denoisers()) fmt::print("{:<12} {}\n", entry.name, entry.description);
-    return ExitCode::done;
-  }
-  if (print_requested_views(flags.display)) return ExitCode::done;
+  if (print_requested_denoisers(flags.filter) || print_requested_views(flags.display)) return ExitCode::done;
   if (flags.input.empty()) throw Error(ErrorKind::usage, "missing IN (.exr); see vernier denoise --help");
   if (flags.output.empty())
     throw Error(ErrorKind::usage, "missing -o FILE (.exr, .png, .jpg); see vernier denoise --help");

@@ -66,6 +66,12 @@ NoisyImage half_of(const NoisyImage& picture, const Halves& halves, size_t which
 
 }  // namespace
 
+bool print_requested_denoisers(const std::string& filter) {
+  if (filter != "help") return false;
+  for (const Denoiser& entry : denoisers()) fmt::print("{:<12} {}\n", entry.name, entry.description);
+  return true;
+}
+
 Denoised denoise(const LayeredImage& picture, const Denoiser& denoiser) {
   const NoisyImage noisy{picture.rgb(), picture.layer("error"), picture.layer("albedo"), picture.layer("N")};
   const auto halves = find_halves(picture);

@@ -15,6 +15,9 @@ namespace vernier::apps {
 /// Layers that denoising wants of a render, as --aov takes them.
 inline constexpr const char* layers_for_denoising = "error,half,albedo,normal";
 
+/// Prints the filters when `filter` is "help"; false: it is not.
+bool print_requested_denoisers(const std::string& filter);
+
 struct Denoised {
   Image picture;
   std::optional<DenoisedError> error;  ///< when the picture came with its halves

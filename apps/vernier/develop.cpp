@@ -44,13 +44,12 @@ void require_arguments(const DevelopFlags& flags) {
     throw Error(ErrorKind::usage, "missing -o FILE (.png, .jpg, .exr); see vernier develop --help");
   if (!flags.layer.empty() && !flags.denoise.empty())
     throw Error(ErrorKind::usage, {}, "--denoise", "filters the colour, and --layer shows something else");
-  std::vector<std::string> read{flags.input, flags.display.config};
-  require_separate_files(read, flags.outputs);
+  require_separate_files({flags.input, flags.display.config}, flags.outputs);
   for (const auto& output : flags.outputs) check_writable_image(output);
 }
 
 ExitCode run_develop(const DevelopFlags& flags, const std::string& command_line) {
-  if (print_requested_views(flags.display)) return ExitCode::done;
+  if (print_requested_denoisers(flags.denoise) || print_requested_views(flags.display)) return ExitCode::done;
   require_arguments(flags);
   const Denoiser* denoiser = flags.denoise.empty() ? nullptr : &find_denoiser(flags.denoise);
   DisplayOptions display = flags.display;
@@ -64,6 +63,7 @@ ExitCode run_develop(const DevelopFlags& flags, const std::string& command_line)
                 "holds display values already; expected scene-linear ones, as in .exr");
   Metadata metadata = std::move(picture.metadata);
   metadata["vernier:developCommand"] = command_line;
+  if (!flags.layer.empty()) metadata["vernier:layer"] = flags.layer;
   std::string done;
   if (denoiser) {
     const Denoised denoised = denoise(picture, *denoiser);
@@ -98,9 +98,7 @@ void register_develop(Program& program) {
       ->type_name("FILE")
       ->allow_extra_args(false);
   add_display_flags(*command, flags->display);
-  command
-      ->add_option("--denoise", flags->denoise,
-                   "filter the noise out first; 'denoise --filter help' lists them")
+  command->add_option("--denoise", flags->denoise, "filter the noise out first; 'help' lists the filters")
       ->type_name("FILTER");
   command->add_option("--layer", flags->layer, "show this layer of the file instead of its colour")
       ->type_name("NAME");

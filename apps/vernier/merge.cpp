@@ -86,6 +86,8 @@ ExitCode run_merge(const MergeFlags& flags, const std::string& command_line) {
     throw Error(ErrorKind::usage, "missing CHECKPOINT: two or more are merged; see vernier merge --help");
   if (flags.output.empty())
     throw Error(ErrorKind::usage, "missing -o FILE (.exr, .png, .jpg); see vernier merge --help");
+  if (!flags.layers.empty() && is_display_file(flags.output))
+    throw Error(ErrorKind::usage, {}, "--aov", "only an .exr can hold layers; name one with -o");
   const std::vector<Layer> chosen = find_film_layers(flags.layers);
   check_writable_image(flags.output);
   const DisplayOptions display =

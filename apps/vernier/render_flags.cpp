@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "apps/vernier/denoising.h"
 #include "apps/vernier/display_flags.h"
 #include "apps/vernier/flags.h"
 #include "core/base/quantities.h"
@@ -149,12 +150,10 @@ bool print_requested_list(const RenderFlags& flags) {
     print_accelerators(flags.accelerator == "help-all");
   } else if (flags.show == "help") {
     for (const auto& name : raycast_shows()) fmt::print("{}\n", name);
-  } else if (flags.denoise == "help") {
-    print_table(denoisers());
   } else if (flags.layers == "help") {
     print_layers();
   } else {
-    return print_requested_views(flags.display);
+    return print_requested_denoisers(flags.denoise) || print_requested_views(flags.display);
   }
   return true;
 }

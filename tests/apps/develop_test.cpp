@@ -65,6 +65,7 @@ TEST_F(Develop, SaysWhatIsMissingOrWrong) {
     EXPECT_EQ(result.exit_code, code) << result.err;
     return result.err;
   };
+  EXPECT_THAT(run_vernier({"develop", "--denoise", "help"}).out, HasSubstr("nlm"));
   EXPECT_THAT(error({"develop"}, 2), HasSubstr("missing IN"));
   EXPECT_THAT(error({"develop", file("a.exr")}, 2), HasSubstr("missing -o FILE"));
   EXPECT_THAT(error({"develop", file("a.png"), "-o", file("b.png")}, 3), HasSubstr("display values already"));

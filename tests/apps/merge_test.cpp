@@ -38,6 +38,16 @@ class MergeCommand : public testing::Test {
   const TemporaryFolder folder_;
 };
 
+TEST_F(MergeCommand, ShowsThePictureThatItWouldWrite) {
+  render("a", {"--size", "32x32", "--spp", "8", "--seed", "1"});
+  render("b", {"--size", "32x32", "--spp", "8", "--seed", "2"});
+  ASSERT_EQ(merge({"a", "b"}).exit_code, 0);
+  const std::string shown = folder_.file("shown.png"), developed = folder_.file("developed.png");
+  ASSERT_EQ(run_vernier({"merge", folder_.file("a.ckpt"), folder_.file("b.ckpt"), "-o", shown}).exit_code, 0);
+  ASSERT_EQ(run_vernier({"develop", folder_.file("merged.exr"), "-o", developed}).exit_code, 0);
+  EXPECT_EQ(read_image(shown).values, read_image(developed).values);
+}
+
 TEST_F(MergeCommand, AllSamplesCount) {
   const std::vector<std::string> names{"a", "b", "c"};
   for (size_t i = 0; i < 3; ++i)
@@ -97,6 +107,10 @@ TEST_F(MergeCommand, Refuses) {
                          folder_.file("merged.png")})
                 .exit_code,
             3);
+  EXPECT_EQ(run_vernier({"merge", folder_.file("a.ckpt"), folder_.file("larger.ckpt"), "--aov", "error", "-o",
+                         folder_.file("merged.png")})
+                .exit_code,
+            2);
   EXPECT_THAT(folder_.names(), testing::Not(testing::Contains(HasSubstr("merged"))));
 }
 

@@ -104,6 +104,7 @@ TEST(TriangleTests, AgreeWithExactArithmetic) {
 // distances of their corners are thousands of times that of the hit.
 TEST(TriangleTests, NeedlesAreMetWhereTheyAre) {
   Dice dice(7, 0);
+  int hits = 0;
   for (int i = 0; i < 20'000; ++i) {
     const Vec3f along = sample_sphere({dice.uniform(0, 1), dice.uniform(0, 1)});
     const auto [across, up, unused] = Frame::from_normal(along);
@@ -119,7 +120,9 @@ TEST(TriangleTests, NeedlesAreMetWhereTheyAre) {
     const auto hit = intersect_watertight(ShearedRay(ray.origin, ray.direction), c[0], c[1], c[2]);
     ASSERT_TRUE(hit) << i;
     ASSERT_NEAR(hit->t, exact.t, 1e-3) << i;
+    ++hits;
   }
+  EXPECT_GT(hits, 10'000);
 }
 
 /// The block's answer for its one triangle in each lane against the plain function's, to the bit.
