@@ -42,8 +42,10 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// Block 0 of `sampler` belongs to the camera; the others are free.
-  virtual Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler) const = 0;
+  /// Block 0 of `sampler` belongs to the camera; the others are free. `known` is about how bright the pixel
+  /// is from other samples of it, in its brightest channel, 0 if unknown: what changes it little may be worth
+  /// less effort. The mean does not depend on it.
+  virtual Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler, float known) const = 0;
 };
 
 /// One line of the table of integrators.

@@ -58,7 +58,7 @@ class RaycastIntegrator : public Integrator {
   explicit RaycastIntegrator(const IntegratorOptions& options)
       : show_(find_by_name(shows, "thing to show", options.show).show) {}
 
-  Estimate estimate(const Scene& scene, const Ray& ray, Sampler&) const override {
+  Estimate estimate(const Scene& scene, const Ray& ray, Sampler&, float) const override {
     Estimate out;
     ++out.rays.camera;
     if (const auto hit = scene.intersect(ray)) out.radiance = show_(scene, ray, *hit);

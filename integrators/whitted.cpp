@@ -20,7 +20,7 @@ class WhittedIntegrator : public Integrator {
                               deepest));
   }
 
-  Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler) const override {
+  Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler, float) const override {
     Walk walk{scene, sampler, {}, 0};
     ++walk.out.rays.camera;
     const Segment segment = camera_segment(scene, ray);

@@ -51,7 +51,7 @@ uint64_t trace_paths(const Scene& scene, const validation::CrossCheck& check, co
     parallel_for(size_t(settings.height), [&](size_t y) {
       for (int x = 0; x < settings.width && check.rays() < rays; ++x) {
         CameraSample sample = camera_sample(camera, settings.width, x, int(y), 0, index, settings.seed);
-        integrator->estimate(scene, sample.ray, sample.sampler);
+        integrator->estimate(scene, sample.ray, sample.sampler, 0);
       }
     });
     paths += uint64_t(settings.width) * uint64_t(settings.height);

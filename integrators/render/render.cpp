@@ -204,7 +204,7 @@ class Renderer {
     const uint32_t index = draw_index(planned, guides);
     const int full_x = crop_.x + x, full_y = crop_.y + y;
     CameraSample sample = camera_sample(camera_, options_.width, full_x, full_y, half, index, options_.seed);
-    const Estimate estimate = integrator_.estimate(scene_, sample.ray, sample.sampler);
+    const Estimate estimate = integrator_.estimate(scene_, sample.ray, sample.sampler, known(x, y, half));
     ++totals.samples;
     totals.rays += estimate.rays;
     if (!result().film.add(x, y, half, estimate.radiance)) {
@@ -215,6 +215,13 @@ class Renderer {
       totals.light.add(estimate);
       if (options_.adaptive) state_.guides[size_t(half)].add(x, y, estimate.radiance);
     }
+  }
+
+  /// What a half knows of a pixel. It must not depend on extra samples, whose number depends on the other
+  /// half.
+  float known(int x, int y, int half) {
+    if (options_.adaptive) return max_component(state_.guides[size_t(half)].mean(x, y));
+    return max_component(Rgb(result().film.half_mean(x, y, half)));
   }
 
   /// Index of the next sample of its kind, which goes on even where the film rejects one.

@@ -55,6 +55,12 @@ class SampleGuide {
     ++cell.count;
   }
 
+  /// Mean of the samples of a pixel; zero where there are none.
+  Rgb mean(int x, int y) const {
+    const Cell& cell = cells_[size_t(y) * width_ + x];
+    return cell.sum / float(std::max(1u, cell.count));
+  }
+
   /// How strongly the image's relative error depends on each pixel's number of samples: the spread of a
   /// single sample over sqrt(r^2 + 0.01), root mean square over 3 x 3 pixels, since one pixel's own figure is
   /// too noisy to act on and a neighbour's surprise is a warning.
