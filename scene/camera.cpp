@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/camera.h"
 
-#include <algorithm>
-
 namespace vernier {
 
 Camera::Camera(const CameraDescription& d, int width, int height)
@@ -69,8 +67,9 @@ std::optional<Vec2f> Camera::project(const Vec3f& world) const {
   const Vec3f d = world - origin_;
   if (kind_ == CameraDescription::Kind::panorama) {
     if (!(length(d) > 0)) return std::nullopt;
-    const float u = std::atan2(dot(d, back_), dot(d, right_)) * (inv_pi / 2) + 0.5f;
-    const float v = std::acos(std::clamp(dot(normalize(d), up_), -1.f, 1.f)) * inv_pi;
+    const float ahead = dot(d, right_), aside = dot(d, back_);
+    const float u = std::atan2(aside, ahead) * (inv_pi / 2) + 0.5f;
+    const float v = std::atan2(std::hypot(ahead, aside), dot(d, up_)) * inv_pi;
     return Vec2f(u * width_, v * height_);
   }
   const float depth = -dot(d, back_);

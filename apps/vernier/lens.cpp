@@ -121,7 +121,7 @@ void add_lens_flags(CLI::App& command, LensFlags& flags) {
       ->type_name("METRES|X,Y|auto");
   command
       .add_option("--sensor", flags.sensor,
-                  "length of the lens's picture on its longer side (36, full frame)")
+                  "width of the sensor, on the picture's longer side (36, full frame)")
       ->check(real_number(1e-3, 1e6))
       ->type_name("MM");
 }

@@ -118,8 +118,8 @@ void print_layers() {
 
 void print_filters() {
   for (const FilterEntry& filter : filters())
-    fmt::print("{:<16} {} ({} pixels wide unless :WIDTH says otherwise)\n", filter.name, filter.description,
-               filter.width);
+    fmt::print("{:<20} {}\n", fmt::format("{}:{}", filter.name, filter.width), filter.description);
+  fmt::print("the number is the width in pixels, and may be left out\n");
 }
 
 }  // namespace

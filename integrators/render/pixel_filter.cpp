@@ -53,7 +53,7 @@ const std::vector<FilterEntry>& filters() {
   static const std::vector<FilterEntry> table{
       {"box", PixelFilter::Kind::box, 1, "the plain mean over the pixel"},
       {"gaussian", PixelFilter::Kind::gaussian, 2, "soft; its standard deviation is a sixth of the width"},
-      {"blackman-harris", PixelFilter::Kind::blackman_harris, 2, "soft, and falls to nothing at its ends"},
+      {"blackman-harris", PixelFilter::Kind::blackman_harris, 2.5f, "soft, and falls to nothing at its ends"},
   };
   return table;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "integrators/render/render.h"
 #include "scene/camera.h"
 #include "tests/support/test_scenes.h"
 
