@@ -206,7 +206,7 @@ TEST(Panorama, IsTwiceAsWideAsHighAndSeesAllAroundFromItsCamera) {
   const test::TemporaryFolder folder;
   const std::string output = folder.file("out.exr");
   ASSERT_EQ(render(cornell_box, output,
-                   {"--panorama", "--look-from", "0.28,0.27,0.28", "--spp", "1", "--aov", "depth,coverage"})
+                   {"--panorama", "--look-from", "0.28,0.45,0.28", "--spp", "1", "--aov", "depth,coverage"})
                 .exit_code,
             0);
   const LayeredImage picture = read_layers(output);
