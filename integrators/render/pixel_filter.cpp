@@ -60,7 +60,10 @@ const std::vector<FilterEntry>& filters() {
 
 PixelFilter parse_filter(std::string_view text) {
   const size_t colon = text.find(':');
-  const FilterEntry& entry = find_by_name(filters(), "filter", text.substr(0, colon));
+  std::vector<std::string> names;
+  for (const FilterEntry& filter : filters()) names.emplace_back(filter.name);
+  const FilterEntry& entry =
+      find_by_name(filters(), "filter", find_by_prefix("filter", text.substr(0, colon), names));
   PixelFilter filter{entry.kind, entry.width};
   if (colon == std::string_view::npos) return filter;
   const std::string_view number = text.substr(colon + 1);

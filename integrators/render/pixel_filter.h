@@ -32,8 +32,8 @@ class FilterSampler {
   std::vector<double> integrals_;  ///< at the ends of cells of equal width; empty: it is a box
 };
 
-/// A filter as --filter takes it: "box", "gaussian:2", "blackman-harris". Each has a width of its own if none
-/// is said. Throws Error(usage).
+/// A filter as --filter takes it: "box", "gaussian:2", "blackman-harris", or the beginning of such a name.
+/// Each has a width of its own if none is said. Throws Error(usage).
 PixelFilter parse_filter(std::string_view text);
 /// The same from a filter, width always said.
 std::string filter_text(const PixelFilter& filter);

@@ -138,7 +138,7 @@ TEST_F(LensFlags, WrongValuesAreRefusedInOneLine) {
   EXPECT_THAT(refused({"--fstop", "2"}), HasSubstr("camera flat is orthographic"));
   EXPECT_THAT(refused({"--fstop", "2", "--ortho"}), AllOf(HasSubstr("--ortho"), HasSubstr("--fstop")));
   EXPECT_THAT(refused({"--sensor", "0", "--fstop", "2"}), HasSubstr("--sensor"));
-  EXPECT_THAT(refused({"--filter", "blackman"}), HasSubstr("blackman-harris"));
+  EXPECT_THAT(refused({"--filter", "gausian"}), HasSubstr("did you mean 'gaussian'"));
   EXPECT_THAT(refused({"--filter", "gaussian:99"}), HasSubstr("expected 0.1 to 16"));
   for (const std::string flag : {"--fov=20", "--zoom=2", "--ortho", "--fstop=2", "--roll=3"})
     EXPECT_THAT(refused({"--panorama", flag}),

@@ -10,7 +10,8 @@
 namespace vernier::test {
 namespace {
 
-constexpr int size = 40;                 // pixels of a square picture
+constexpr int size = 40;  // pixels of a square picture
+constexpr double middle = size / 2.0;
 constexpr float pixels_per_slope = 400;  // pixels for a unit of the plane at unit distance
 constexpr float lens_radius = 0.1f;
 
@@ -50,7 +51,7 @@ Blur blur_of(const Image& image) {
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x) {
       const double value = *image.pixel(x, y);
-      const double squared = square(x + 0.5 - size / 2) + square(y + 0.5 - size / 2);
+      const double squared = square(x + 0.5 - middle) + square(y + 0.5 - middle);
       blur.sum += value;
       blur.mean_square += value * squared;
       if (value > 0) blur.farthest = std::max(blur.farthest, std::sqrt(squared));
@@ -82,7 +83,7 @@ TEST(Lens, WhatIsInFocusIsAsSharpAsAPinholesPicture) {
   // Its edges are between pixels.
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x) {
-      const bool inside = std::max(std::abs(x + 0.5 - size / 2), std::abs(y + 0.5 - size / 2)) < light / 2.0;
+      const bool inside = std::max(std::abs(x + 0.5 - middle), std::abs(y + 0.5 - middle)) < light / 2.0;
       EXPECT_NEAR(*sharp.pixel(x, y), inside ? 1 : 0, 1.0 / 64) << x << " " << y;
     }
 }

@@ -189,6 +189,7 @@ TEST(PixelFilter, IsReadAsItIsWritten) {
     EXPECT_EQ(filter_text(parse_filter(text)), text);
   for (const FilterEntry& entry : filters())
     EXPECT_EQ(filter_text(parse_filter(entry.name)), filter_text({entry.kind, entry.width}));
+  EXPECT_EQ(filter_text(parse_filter("Black:3")), "blackman-harris:3");
   const auto complaint = [](const char* text) -> std::string {
     try {
       parse_filter(text);
