@@ -4,7 +4,12 @@
 namespace vernier {
 
 Camera::Camera(const CameraDescription& d, int width, int height)
-    : kind_(d.kind), origin_(d.to_world.origin), width_(float(width)), height_(float(height)) {
+    : kind_(d.kind),
+      origin_(d.to_world.origin),
+      width_(float(width)),
+      height_(float(height)),
+      lens_radius_(d.lens_radius),
+      inverse_focus_(1 / d.focus_distance) {
   // Scale and shear of a camera's node do not count (glTF 2.0, 3.10.2): only where it is and where it looks.
   back_ = normalize(d.to_world.z);
   right_ = normalize(cross(d.to_world.y, back_));
@@ -13,22 +18,60 @@ Camera::Camera(const CameraDescription& d, int width, int height)
   half_extent_ = {vertical * width_ / height_, vertical};
 }
 
+Vec2f Camera::on_image_plane(const Vec2f& raster) const {
+  return {(2 * raster.x / width_ - 1) * half_extent_.x, (1 - 2 * raster.y / height_) * half_extent_.y};
+}
+
+/// Positions beyond a pole go on on its other side, as a filter that reaches there wants.
+Vec3f Camera::panorama_direction(const Vec2f& raster) const {
+  const float azimuth = 2 * pi * (raster.x / width_ - 0.5f), from_up = pi * raster.y / height_;
+  const float across = std::sin(from_up);
+  return right_ * (std::cos(azimuth) * across) + up_ * std::cos(from_up) +
+         back_ * (std::sin(azimuth) * across);
+}
+
 Ray Camera::ray(const Vec2f& raster) const {
-  const float x = (2 * raster.x / width_ - 1) * half_extent_.x;
-  const float y = (1 - 2 * raster.y / height_) * half_extent_.y;
+  const auto [x, y] = on_image_plane(raster);
   Ray ray;
-  if (kind_ == CameraDescription::Kind::perspective) {
-    ray.origin = origin_;
-    ray.direction = normalize(right_ * x + up_ * y - back_);
-  } else {
-    ray.origin = origin_ + right_ * x + up_ * y;
-    ray.direction = -back_;
+  ray.origin = origin_;
+  switch (kind_) {
+    case CameraDescription::Kind::perspective:
+      ray.direction = normalize(right_ * x + up_ * y - back_);
+      break;
+    case CameraDescription::Kind::orthographic:
+      ray.origin = origin_ + right_ * x + up_ * y;
+      ray.direction = -back_;
+      break;
+    case CameraDescription::Kind::panorama:
+      ray.direction = normalize(panorama_direction(raster));
+      break;
   }
   return ray;
 }
 
+Ray Camera::ray(const Vec2f& raster, const Vec2f& on_lens) const {
+  const Vec2f at = on_image_plane(raster), shift = on_lens * lens_radius_;
+  // The point in focus, seen from `shift`, over its distance: this holds for infinite ones too.
+  const Vec2f slope = at - shift * inverse_focus_;
+  Ray ray;
+  ray.origin = origin_ + right_ * shift.x + up_ * shift.y;
+  ray.direction = normalize(right_ * slope.x + up_ * slope.y - back_);
+  return ray;
+}
+
+float Camera::depth(const Ray& ray, float t) const {
+  return kind_ == CameraDescription::Kind::panorama ? t : -t * dot(ray.direction, back_);
+}
+
 std::optional<Vec2f> Camera::project(const Vec3f& world) const {
   const Vec3f d = world - origin_;
+  if (kind_ == CameraDescription::Kind::panorama) {
+    if (!(length(d) > 0)) return std::nullopt;
+    const float ahead = dot(d, right_), aside = dot(d, back_);
+    const float u = std::atan2(aside, ahead) * (inv_pi / 2) + 0.5f;
+    const float v = std::atan2(std::hypot(ahead, aside), dot(d, up_)) * inv_pi;
+    return Vec2f(u * width_, v * height_);
+  }
   const float depth = -dot(d, back_);
   if (!(depth > 0)) return std::nullopt;
   const float scale = kind_ == CameraDescription::Kind::perspective ? 1 / depth : 1;

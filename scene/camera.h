@@ -8,24 +8,39 @@
 
 namespace vernier {
 
-/// Pinhole or orthographic camera for a picture of width x height pixels. Raster x runs right, y down, (0,0)
-/// the outer corner of the first pixel. The vertical extent is the description's; the horizontal follows the
-/// picture's shape (square pixels).
+/// A camera for a picture of width x height pixels. Raster x runs right, y down, (0,0) the outer corner of
+/// the first pixel; positions outside of the picture are as good as those in it. The vertical extent is the
+/// description's; the horizontal follows the picture's shape (square pixels). A panorama is stretched to it.
 class Camera {
  public:
   Camera(const CameraDescription& description, int width, int height);
 
-  /// World ray through raster position `raster`, unit direction.
+  /// World ray through raster position `raster`, unit direction; with a lens, through its centre.
   Ray ray(const Vec2f& raster) const;
 
-  /// Raster position of a world point; empty when it is not in front of the camera.
+  bool has_lens() const { return lens_radius_ > 0; }
+  /// The ray that goes through this point of the opening, which is the unit disk. All that belong to one
+  /// raster position meet in the plane that is in focus: a thin lens (Cook, Porter and Carpenter 1984,
+  /// "Distributed Ray Tracing") whose angle of view does not change with its focus.
+  Ray ray(const Vec2f& raster, const Vec2f& on_lens) const;
+
+  /// Raster position of a world point, seen from the lens's centre; empty when it is not in front of the
+  /// camera.
   std::optional<Vec2f> project(const Vec3f& world) const;
 
+  /// Metres along the axis to what `ray`, one of this camera's from the lens's centre, meets at `t`; for a
+  /// panorama, which has no axis, along the ray.
+  float depth(const Ray& ray, float t) const;
+
  private:
+  Vec2f on_image_plane(const Vec2f& raster) const;
+  Vec3f panorama_direction(const Vec2f& raster) const;
+
   CameraDescription::Kind kind_;
   Vec3f origin_, right_, up_, back_;  ///< orthonormal, world
   Vec2f half_extent_;                 ///< of the image plane: at unit distance, or in metres for orthographic
   float width_, height_;
+  float lens_radius_, inverse_focus_;  ///< metres, one over metres
 };
 
 }  // namespace vernier

@@ -25,6 +25,14 @@ constexpr Conflict conflicts[] = {
     {"--camera", "--elevation", "each says where the camera stands"},
     {"--camera", "--fit", "--fit moves the camera; --zoom does not"},
     {"--ortho", "--fov", "an orthographic camera has no angle; --ortho HEIGHT says how much it sees"},
+    {"--ortho", "--fstop", "an orthographic camera sees everything sharp"},
+    {"--panorama", "--fov", "a panorama sees all around"},
+    {"--panorama", "--zoom", "a panorama sees all around"},
+    {"--panorama", "--ortho", "a panorama sees all around from one point"},
+    {"--panorama", "--fstop", "a panorama sees everything sharp"},
+    {"--panorama", "--look-at", "a panorama sees all around; +x is in its middle, as in --env pictures"},
+    {"--panorama", "--up", "+y is up in a panorama, as in --env pictures"},
+    {"--panorama", "--roll", "+y is up in a panorama, as in --env pictures"},
 };
 
 void refuse_contradictions(const CLI::App& command) {
@@ -35,6 +43,9 @@ void refuse_contradictions(const CLI::App& command) {
     if (command.count(flag) > 0 && command.count("--look-from") == 0)
       throw CLI::ValidationError(fmt::format(
           "{} needs --look-from; --azimuth and --elevation go around the scene without it", flag));
+  for (const char* flag : {"--focus", "--sensor"})
+    if (command.count(flag) > 0 && command.count("--fstop") == 0)
+      throw CLI::ValidationError(fmt::format("{} needs --fstop N; without a lens everything is sharp", flag));
 }
 
 /// What follows --ortho may be its height, or belong to something else, which the parser cannot know.
@@ -94,6 +105,9 @@ void add_camera_flags(CLI::App& command, CameraFlags& flags) {
       ->expected(0, 1)
       ->check(CLI::Validator([](std::string& text) { return text.empty() ? text : check_height(text); }, ""))
       ->type_name("HEIGHT");
+  command.add_flag("--panorama", flags.panorama,
+                   "see all around, as a picture that --env takes: twice as wide as high");
+  add_lens_flags(command, flags.lens);
   command.parse_complete_callback([&command] { refuse_contradictions(command); });
   command.option_defaults()->group(group);
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "apps/vernier/commands.h"
+#include "apps/vernier/lens.h"
 
 namespace vernier::apps {
 
@@ -19,6 +20,8 @@ struct CameraFlags {
   std::optional<float> fov;
   bool ortho = false;
   std::optional<float> ortho_height;  ///< metres
+  bool panorama = false;
+  LensFlags lens;
 
   /// Whether the camera is to stand where the scene fits the picture.
   bool orbits() const { return azimuth || elevation || !fit.empty(); }

@@ -56,6 +56,7 @@ void look_from(CameraDescription& camera, const CameraFlags& flags, const Bounds
 }
 
 float shape(const CameraDescription& camera) {
+  if (camera.kind == CameraDescription::Kind::panorama) return 2;
   float aspect = camera.aspect;
   if (camera.kind == CameraDescription::Kind::orthographic) aspect = std::abs(camera.xmag / camera.ymag);
   return std::isfinite(aspect) && aspect > 0 ? aspect : default_aspect;
@@ -85,6 +86,14 @@ void adjust_lens(CameraDescription& camera, const CameraFlags& flags, const Boun
     camera.yfov = 2 * std::atan(std::tan(camera.yfov / 2) / flags.zoom);
   }
   if (flags.ortho || flags.zoom != 1) camera.xmag = camera.ymag * aspect;
+}
+
+/// From where the camera stands, upright, so that --env shows the picture's directions where they are.
+void look_around(CameraDescription& camera) {
+  const Vec3f place = camera.to_world.origin;
+  camera.kind = CameraDescription::Kind::panorama;
+  camera.to_world = {};
+  camera.to_world.origin = place;
 }
 
 FittedView view_of(const CameraFlags& flags) {
@@ -164,7 +173,10 @@ CameraDescription place_camera(const std::optional<CameraDescription>& chosen, c
     note_fitting(flags, subject, log);
     camera = fitted_camera(subject, aspect > 0 ? aspect : default_aspect, view_of(flags));
   }
-  adjust_lens(camera, flags, seen);
+  if (flags.panorama)
+    look_around(camera);
+  else
+    adjust_lens(camera, flags, seen);
   return camera;
 }
 

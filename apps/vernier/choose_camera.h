@@ -21,7 +21,8 @@ std::optional<CameraDescription> choose_camera(std::span<const CameraDescription
 
 /// The camera to render with: `chosen`, or without one a camera called "look-from" that stands where the
 /// flags say, or one called "fitted" that sees the scene's subject whole; then turned, widened or zoomed as
-/// asked. `aspect` is the picture's width over height; 0: not given. Throws Error(usage).
+/// asked, or made a panorama. Its lens is for fit_lens() to add. `aspect` is the picture's width over height;
+/// 0: not given. Throws Error(usage).
 CameraDescription place_camera(const std::optional<CameraDescription>& chosen, const CameraFlags& flags,
                                const SceneGeometry& geometry, float aspect, NoticeLog& log);
 

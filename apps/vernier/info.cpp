@@ -12,6 +12,7 @@
 #include "apps/vernier/scene_summary.h"
 #include "apps/vernier/surroundings.h"
 #include "core/base/quantities.h"
+#include "integrators/render/pixel_filter.h"
 #include "scene/scene.h"
 
 namespace vernier::apps {
@@ -82,8 +83,10 @@ void print_text(const Json& scene, const SceneCounts& counts, const Bounds& boun
   fmt::print("textures   {}, {} decoded\n", counts.textures, format_bytes(double(counts.texture_bytes)));
   fmt::print("lights     {} punctual, {} emissive triangles\n", counts.punctual_lights,
              counts.emissive_triangles);
-  fmt::print("render     by camera {}, {}\n", one_line(scene["render"]["camera"].get<std::string>()),
-             surroundings_text(scene["render"]["surroundings"].get<std::string>()));
+  const Json& render = scene["render"];
+  fmt::print("render     by camera {}, {}, filter {}\n", one_line(render["camera"].get<std::string>()),
+             surroundings_text(render["surroundings"].get<std::string>()),
+             render["filter"].get<std::string>());
   print_list("cameras", scene["cameras"]);
   print_list("punctual lights", scene["punctual_lights"]);
   print_list("materials", scene["materials"], material_json(MaterialDescription{}));
@@ -98,7 +101,9 @@ Json default_render_json(Scene& scene, std::span<const CameraDescription> camera
       place_camera(choose_camera(cameras, flags, unsaid), flags, scene.geometry(), 0, unsaid);
   RenderSettings options;
   fill_in_size(options, view);
-  return {{"camera", view.name}, {"surroundings", surround(scene, std::nullopt, view, options, unsaid).name}};
+  return {{"camera", view.name},
+          {"surroundings", surround(scene, std::nullopt, view, options, unsaid).name},
+          {"filter", filter_text(options.filter)}};
 }
 
 ExitCode run_info(const InfoFlags& flags) {

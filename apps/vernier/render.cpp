@@ -129,6 +129,7 @@ std::shared_ptr<const Scene> prepare(const RenderRequest& request, RenderSetting
   settings.camera = place_camera(chosen, flags.camera, scene->geometry(), asked_aspect(flags.size), log);
   report.camera = settings.camera.name;
   fill_in_size(settings, settings.camera);
+  report.lens = fit_lens(settings, flags.camera.lens, *scene, log);
   check_picture_size(settings, memory_use(request));
   if (shows_light(flags))
     report.surroundings = surround(*scene, request.surroundings, settings.camera, settings, log);

@@ -12,6 +12,7 @@
 #include "core/base/quantities.h"
 #include "core/denoise/denoise.h"
 #include "integrators/render/layers.h"
+#include "integrators/render/pixel_filter.h"
 #include "scene/accel/accelerator.h"
 #include "vernier/error.h"
 
@@ -39,6 +40,10 @@ void add_quality_flags(CLI::App& command, RenderFlags& flags) {
   command.add_option("--crop", flags.crop, "render only this part")
       ->check(parsed_by(parse_pixel_rect))
       ->type_name("WxH+X+Y");
+  command
+      .add_option("--filter", flags.filter, "what a pixel shows of its surroundings; 'help' lists filters")
+      ->type_name("NAME[:WIDTH]")
+      ->capture_default_str();
   command.add_option("--seed", flags.seed, "of the random numbers")
       ->transform(whole_number(0, std::numeric_limits<uint64_t>::max()))
       ->type_name("N")
@@ -111,6 +116,12 @@ void print_layers() {
                fmt::join(layer.channels.begin(), layer.channels.begin() + layer.channel_count(), ", "));
 }
 
+void print_filters() {
+  for (const FilterEntry& filter : filters())
+    fmt::print("{:<20} {}\n", fmt::format("{}:{}", filter.name, filter.width), filter.description);
+  fmt::print("the number is the width in pixels, and may be left out\n");
+}
+
 }  // namespace
 
 void add_adaptive_flag(CLI::App& command, RenderFlags& flags) {
@@ -150,6 +161,8 @@ bool print_requested_list(const RenderFlags& flags) {
     print_accelerators(flags.accelerator == "help-all");
   } else if (flags.show == "help") {
     for (const auto& name : raycast_shows()) fmt::print("{}\n", name);
+  } else if (flags.filter == "help") {
+    print_filters();
   } else if (flags.layers == "help") {
     print_layers();
   } else {

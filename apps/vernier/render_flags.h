@@ -27,6 +27,7 @@ struct RenderFlags {
 
   std::optional<int> spp;
   std::string time, error, size, crop;
+  std::string filter = "box";
   std::string adaptive = "on";
   uint64_t seed = 0;
   unsigned threads = 0;

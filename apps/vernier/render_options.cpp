@@ -15,6 +15,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/names.h"
 #include "core/image/image_io.h"
+#include "integrators/render/pixel_filter.h"
 #include "scene/accel/accelerator.h"
 #include "vernier/error.h"
 
@@ -54,6 +55,7 @@ RenderSettings make_settings(const RenderFlags& flags) {
     options.integrator_options.show = flags.show;
   }
   make_integrator(options.integrator, options.integrator_options);  // or it throws
+  options.filter = parse_filter(flags.filter);
   options.seed = flags.seed;
   if (!flags.time.empty()) options.limits.seconds = parse_seconds(flags.time);
   if (!flags.error.empty()) options.limits.error = parse_fraction(flags.error);

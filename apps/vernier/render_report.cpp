@@ -13,6 +13,7 @@
 #include "apps/vernier/messages.h"
 #include "apps/vernier/missing_text.h"
 #include "core/base/quantities.h"
+#include "integrators/render/pixel_filter.h"
 
 namespace vernier::apps {
 namespace {
@@ -52,6 +53,7 @@ Json picture_json(const RenderReport& report, const RenderFlags& flags, const Re
                   {"integrator", flags.integrator},
                   {"camera", report.camera},
                   {"surroundings", report.surroundings.name},
+                  {"filter", filter_text(report.settings.filter)},
                   {"seed", flags.seed},
                   {"max_depth", flags.integrator_options.max_depth},
                   {"samples", result.samples},
@@ -59,6 +61,7 @@ Json picture_json(const RenderReport& report, const RenderFlags& flags, const Re
                   {"asked", asked_json(report.settings)},
                   {"stopped_by", name(result.reason)},
                   {"files", report.files}};
+  if (report.lens) picture["lens"] = to_json(*report.lens);
   if (report.settings.crop.width > 0) picture["crop"] = crop_text(report.settings.crop);
   return picture;
 }
@@ -125,6 +128,7 @@ Metadata image_metadata(const RenderReport& report, const RenderFlags& flags, co
       {"vernier:sceneHash", report.scene_hash},
       {"vernier:camera", report.camera},
       {"vernier:surroundings", report.surroundings.name},
+      {"vernier:filter", filter_text(report.settings.filter)},
       {"vernier:integrator", flags.integrator},
       {"vernier:accelerator", report.accelerator},
       {"vernier:platform", platform()},
@@ -133,6 +137,7 @@ Metadata image_metadata(const RenderReport& report, const RenderFlags& flags, co
       {"vernier:size", fmt::format("{}x{}", report.settings.width, report.settings.height)},
   };
   metadata.merge(result_metadata(result));
+  if (report.lens) metadata["vernier:lens"] = lens_text(*report.lens);
   if (report.settings.crop.width > 0) metadata["vernier:crop"] = crop_text(report.settings.crop);
   return metadata;
 }
@@ -176,8 +181,9 @@ std::string scene_lines(const RenderReport& report) {
          fmt::format("accelerator: {}, {}, built in {}\n", report.accelerator,
                      format_bytes(double(report.accelerator_stats.bytes)),
                      format_seconds(report.accelerator_stats.build_seconds)) +
-         fmt::format("rendering {}x{} on {} threads, {} of memory in use at most so far\n",
-                     report.settings.width, report.settings.height, report.threads,
+         fmt::format("rendering {}x{}, filter {}{}, on {} threads, {} of memory in use at most so far\n",
+                     report.settings.width, report.settings.height, filter_text(report.settings.filter),
+                     report.lens ? ", " + lens_text(*report.lens) : "", report.threads,
                      format_bytes(double(peak_memory_bytes())));
 }
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "apps/vernier/lens.h"
 #include "apps/vernier/notice_log.h"
 #include "apps/vernier/render_options.h"
 #include "apps/vernier/scene_summary.h"
@@ -18,6 +19,7 @@ namespace vernier::apps {
 struct RenderReport {
   std::string command_line;
   std::string scene_file, scene_hash, camera, accelerator;
+  std::optional<Lens> lens;  ///< none: a pinhole
   Surroundings surroundings{"none", nullptr};
   SceneCounts counts;
   AcceleratorStats accelerator_stats;

@@ -46,11 +46,12 @@ uint64_t trace_paths(const Scene& scene, const validation::CrossCheck& check, co
                      uint64_t rays) {
   const auto integrator = make_integrator(settings.integrator, settings.integrator_options);
   const Camera camera(settings.camera, settings.width, settings.height);
+  const CameraSamples camera_samples(camera, settings);
   uint64_t paths = 0;
   for (uint32_t index = 0; check.rays() < rays; ++index) {
     parallel_for(size_t(settings.height), [&](size_t y) {
       for (int x = 0; x < settings.width && check.rays() < rays; ++x) {
-        CameraSample sample = camera_sample(camera, settings.width, x, int(y), 0, index, settings.seed);
+        CameraSample sample = camera_samples.get({x, int(y), 0, index});
         integrator->estimate(scene, sample.ray, sample.sampler, 0);
       }
     });
@@ -98,6 +99,7 @@ ExitCode run_verify(const VerifyFlags& flags) {
   settings.seed = flags.seed;
   settings.camera = place_camera(chosen, flags.camera, scene.geometry(), 0, log);
   fill_in_size(settings, settings.camera);
+  fit_lens(settings, flags.camera.lens, scene, log);
   surround(scene, std::nullopt, settings.camera, settings, log);
 
   Geometry unfiltered = scene.accelerated_geometry();

@@ -41,15 +41,20 @@ struct InstanceDescription {
   std::optional<uint32_t> object{};
 };
 
-/// Looks along its local -z, +y up.
+/// Looks along its local -z, +y up. A panorama sees all around as EnvironmentDescription pictures it, in
+/// local axes: what lies along +x is in its middle, +z a quarter of its width to the right.
 struct CameraDescription {
-  enum class Kind { perspective, orthographic };
+  enum class Kind { perspective, orthographic, panorama };
   std::string name;
   Kind kind = Kind::perspective;
   float yfov = 0.8f;         ///< perspective: full vertical angle
   float aspect = 0;          ///< width over height; 0: that of the image
   float xmag = 1, ymag = 1;  ///< orthographic: half width and half height in metres
-  Transform to_world;        ///< orthonormal
+  /// Perspective: of the round opening of a thin lens, metres; 0: a pinhole.
+  float lens_radius = 0;
+  float focus_distance =
+      1;               ///< metres along the axis to the plane that the lens shows sharp; may be infinite
+  Transform to_world;  ///< orthonormal
   /// Why no picture can be taken with it, as the text of an Error; empty: one can.
   std::string defect;
 };

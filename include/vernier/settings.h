@@ -38,11 +38,22 @@ struct RenderLimits {
   double error = 0;
 };
 
+/// By what weight a pixel shows what lies around its centre: the product of a function of x and one of y. The
+/// samples are spread by it, so each belongs to one pixel and pixels stay independent of each other.
+struct PixelFilter {
+  /// A gaussian is cut off at three standard deviations. Blackman-Harris is the window of Harris 1978 ("On
+  /// the Use of Windows for Harmonic Analysis with the Discrete Fourier Transform"), four terms.
+  enum class Kind { box, gaussian, blackman_harris };
+  Kind kind = Kind::box;
+  float width = 1;  ///< pixels from one end to the other, 0.1 to 16
+};
+
 /// All that a picture depends on beside its scene, and when to stop.
 struct VERNIER_API RenderSettings {
   int width = 0, height = 0;  ///< of the full picture, pixels
   Crop crop;                  ///< what is rendered; zero width: everything
   CameraDescription camera;
+  PixelFilter filter;
   std::string integrator = "path";
   IntegratorOptions integrator_options;
   bool adaptive = true;  ///< spend samples where they lower the picture's error

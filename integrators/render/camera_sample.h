@@ -2,7 +2,10 @@
 #pragma once
 
 #include "core/sampling/sampler.h"
+#include "core/sampling/warp.h"
+#include "integrators/render/pixel_filter.h"
 #include "scene/camera.h"
+#include "vernier/settings.h"
 
 namespace vernier {
 
@@ -12,13 +15,34 @@ struct CameraSample {
   Ray ray;
 };
 
-/// Sample `index` of one half of pixel (x, y) of a picture `width` pixels wide: a pure function, so that what
-/// a sample saw can be asked again later.
-inline CameraSample camera_sample(const Camera& camera, int width, int x, int y, int half, uint32_t index,
-                                  uint64_t seed) {
-  Sampler sampler(uint32_t(y) * uint32_t(width) + uint32_t(x), index, 2 * seed + uint64_t(half));
-  const Vec2f in_pixel = sampler.next2();
-  return {sampler, camera.ray({float(x) + in_pixel.x, float(y) + in_pixel.y})};
-}
+/// Names a camera sample: its pixel in the full picture, and its number in one half of that pixel's.
+struct CameraSampleId {
+  int x, y, half;
+  uint32_t index;
+};
+
+/// The camera samples of a picture: a pure function, so that what a sample saw can be asked again later.
+class CameraSamples {
+ public:
+  /// `camera` must live as long.
+  CameraSamples(const Camera& camera, const RenderSettings& settings)
+      : camera_(camera), filter_(settings.filter), width_(uint32_t(settings.width)), seed_(settings.seed) {}
+
+  /// The point of the lens comes after that of the pixel, so that a pinhole's samples are those without
+  /// lenses.
+  CameraSample get(const CameraSampleId& id) const {
+    Sampler sampler(uint32_t(id.y) * width_ + uint32_t(id.x), id.index, 2 * seed_ + uint64_t(id.half));
+    const Vec2f raster = Vec2f(float(id.x), float(id.y)) + filter_.sample(sampler.next2());
+    if (!camera_.has_lens()) return {sampler, camera_.ray(raster)};
+    const Vec2f on_lens = sample_disk(sampler.next2());
+    return {sampler, camera_.ray(raster, on_lens)};
+  }
+
+ private:
+  const Camera& camera_;
+  const FilterSampler filter_;
+  const uint32_t width_;
+  const uint64_t seed_;
+};
 
 }  // namespace vernier

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/film/film.h"
+#include "integrators/render/camera_sample.h"
 #include "integrators/render/render.h"
 
 namespace vernier {
@@ -16,9 +17,9 @@ struct FirstHitMean {
   float coverage = 0;     ///< part of the samples that meet something
 };
 
-/// What the ray through a pixel's centre meets first.
+/// What the ray through a pixel's centre, and that of the lens, meets first.
 struct FirstHit {
-  float depth = 0;    ///< metres along the camera's axis
+  float depth = 0;    ///< metres along the camera's axis; from a panorama, along the ray
   Vec3f position;     ///< world
   uint32_t instance;  ///< number in the scene
 };
@@ -39,7 +40,7 @@ class FirstHits {
   const Camera& camera_;
   const RenderSettings& options_;
   const Film& film_;
-  Vec3f axis_;  ///< unit, the way the camera looks
+  const CameraSamples camera_samples_;
 };
 
 }  // namespace vernier

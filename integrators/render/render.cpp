@@ -41,7 +41,7 @@ class Renderer {
  public:
   Renderer(const RenderJob& job, RenderState& state, const std::atomic<bool>& stop, RenderHooks hooks)
       : scene_(job.scene),
-        camera_(job.camera),
+        camera_samples_(job.camera, job.settings),
         integrator_(job.integrator),
         options_(job.settings),
         crop_(rendered_part(job.settings)),
@@ -203,7 +203,7 @@ class Renderer {
     const bool guides = number < state_.pass.guiding_count(half);
     const uint32_t index = draw_index(planned, guides);
     const int full_x = crop_.x + x, full_y = crop_.y + y;
-    CameraSample sample = camera_sample(camera_, options_.width, full_x, full_y, half, index, options_.seed);
+    CameraSample sample = camera_samples_.get({full_x, full_y, half, index});
     const Estimate estimate = integrator_.estimate(scene_, sample.ray, sample.sampler, known(x, y, half));
     ++totals.samples;
     totals.rays += estimate.rays;
@@ -268,7 +268,7 @@ class Renderer {
   }
 
   const Scene& scene_;
-  const Camera& camera_;
+  const CameraSamples camera_samples_;
   const Integrator& integrator_;
   const RenderSettings& options_;
   const Crop crop_;

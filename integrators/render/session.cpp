@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <thread>
 
 #include "core/base/build.h"
@@ -12,6 +13,7 @@
 #include "integrators/render/checkpoint.h"
 #include "integrators/render/layers.h"
 #include "integrators/render/picture.h"
+#include "integrators/render/pixel_filter.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
 
@@ -34,6 +36,13 @@ void check(const Scene* scene, const RenderSettings& settings) {
   if (!camera.defect.empty()) refuse(camera.defect);
   if (!(length(camera.to_world.z) > 0 && length(cross(camera.to_world.y, camera.to_world.z)) > 0))
     refuse("the camera has no direction; its to_world is singular");
+  if (!(camera.lens_radius >= 0 && std::isfinite(camera.lens_radius)))
+    refuse(fmt::format("a lens of radius {} m; expected 0, for a pinhole, or more", camera.lens_radius));
+  if (camera.lens_radius > 0 && camera.kind != CameraDescription::Kind::perspective)
+    refuse("only a perspective camera has a lens; set CameraDescription::lens_radius to 0");
+  if (!(camera.focus_distance > 0))
+    refuse(fmt::format("a focus distance of {} m; expected more than 0", camera.focus_distance));
+  check_filter(settings.filter);
 }
 
 void check(const RenderLimits& limits) {

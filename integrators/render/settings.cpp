@@ -10,6 +10,7 @@
 
 #include "core/base/fingerprint.h"
 #include "core/base/names.h"
+#include "integrators/render/pixel_filter.h"
 #include "integrators/render/settings_identity.h"
 
 namespace vernier {
@@ -22,6 +23,12 @@ constexpr int format_version = 1;
 constexpr std::array<std::pair<std::string_view, LightSampling>, 3> light_samplings{
     {{"mis", LightSampling::mis}, {"light", LightSampling::light}, {"bsdf", LightSampling::bsdf}}};
 
+using CameraKind = CameraDescription::Kind;
+constexpr std::array<std::pair<std::string_view, CameraKind>, 3> camera_kinds{
+    {{"perspective", CameraKind::perspective},
+     {"orthographic", CameraKind::orthographic},
+     {"panorama", CameraKind::panorama}}};
+
 /// Calls visit(name, values...) for all that samples depend on. What is not listed here is in no settings
 /// file, and a checkpoint would go on without noticing that it has changed.
 template <typename Settings, typename Visit>
@@ -30,6 +37,7 @@ void for_each_setting(Settings& s, const Visit& visit) {
   visit("camera", s.camera);
   visit("size", s.width, s.height);
   visit("crop", s.crop);
+  visit("filter", s.filter);
   visit("integrator", s.integrator);
   visit("max-depth", options.max_depth);
   visit("light-sampling", options.light_sampling);
@@ -42,23 +50,28 @@ void for_each_setting(Settings& s, const Visit& visit) {
 }
 
 Json encode(const Vec3f& v) { return {v.x, v.y, v.z}; }
-Json encode(LightSampling value) {
-  for (const auto& [name, sampling] : light_samplings)
-    if (sampling == value) return std::string(name);
+/// The name of a value, null where it has none.
+template <typename Names, typename Value>
+Json name_of(const Names& names, Value value) {
+  for (const auto& [name, named] : names)
+    if (named == value) return std::string(name);
   return nullptr;
 }
+Json encode(LightSampling value) { return name_of(light_samplings, value); }
+Json encode(const PixelFilter& filter) { return filter_text(filter); }
 Json encode(const Crop& crop) {
   return crop.width > 0 ? Json{crop.x, crop.y, crop.width, crop.height} : Json(nullptr);
 }
 Json encode(const CameraDescription& camera) {
-  const bool perspective = camera.kind == CameraDescription::Kind::perspective;
   const Transform& t = camera.to_world;
   return {{"name", camera.name},
-          {"kind", perspective ? "perspective" : "orthographic"},
+          {"kind", name_of(camera_kinds, camera.kind)},
           {"yfov", camera.yfov},
           {"aspect", camera.aspect},
           {"xmag", camera.xmag},
           {"ymag", camera.ymag},
+          {"lens_radius", camera.lens_radius},
+          {"focus_distance", std::isinf(camera.focus_distance) ? Json(nullptr) : Json(camera.focus_distance)},
           {"to_world", {encode(t.x), encode(t.y), encode(t.z), encode(t.origin)}}};
 }
 template <typename T>
@@ -69,14 +82,19 @@ Json encode(const T& value) {
 void decode(const Json& json, Vec3f& v) {
   for (int i = 0; i < 3; ++i) v[i] = json.at(size_t(i)).get<float>();
 }
-void decode(const Json& json, LightSampling& value) {
-  std::vector<std::string> names;
-  for (const auto& [name, sampling] : light_samplings) {
-    names.emplace_back(name);
-    if (json.get<std::string>() == name) value = sampling;
+template <typename Names, typename Value>
+void decode_name(const Json& json, const char* kind, const Names& names, Value& value) {
+  std::vector<std::string> known;
+  for (const auto& [name, named] : names) {
+    known.emplace_back(name);
+    if (json.get<std::string>() == name) value = named;
   }
-  if (encode(value) != json) throw_unknown_name("light-sampling", json.get<std::string>(), names);
+  if (name_of(names, value) != json) throw_unknown_name(kind, json.get<std::string>(), known);
 }
+void decode(const Json& json, LightSampling& value) {
+  decode_name(json, "light-sampling", light_samplings, value);
+}
+void decode(const Json& json, PixelFilter& filter) { filter = parse_filter(json.get<std::string>()); }
 void decode(const Json& json, Crop& crop) {
   crop = {};
   if (json.is_null()) return;
@@ -85,15 +103,14 @@ void decode(const Json& json, Crop& crop) {
 void decode(const Json& json, CameraDescription& camera) {
   camera = {};
   camera.name = json.at("name").get<std::string>();
-  const auto kind = json.at("kind").get<std::string>();
-  if (kind != "perspective" && kind != "orthographic")
-    throw_unknown_name("camera kind", kind, std::array<std::string, 2>{"perspective", "orthographic"});
-  camera.kind =
-      kind == "perspective" ? CameraDescription::Kind::perspective : CameraDescription::Kind::orthographic;
+  decode_name(json.at("kind"), "camera kind", camera_kinds, camera.kind);
   camera.yfov = json.at("yfov").get<float>();
   camera.aspect = json.at("aspect").get<float>();
   camera.xmag = json.at("xmag").get<float>();
   camera.ymag = json.at("ymag").get<float>();
+  camera.lens_radius = json.at("lens_radius").get<float>();
+  const Json& focus = json.at("focus_distance");
+  camera.focus_distance = focus.is_null() ? std::numeric_limits<float>::infinity() : focus.get<float>();
   const Json& columns = json.at("to_world");
   Transform& t = camera.to_world;
   size_t i = 0;
@@ -107,6 +124,7 @@ void decode(const Json& json, T& value) {
 /// For people to read.
 std::string text(bool value) { return value ? "on" : "off"; }
 std::string text(const std::string& value) { return value; }
+std::string text(const PixelFilter& filter) { return filter_text(filter); }
 std::string text(LightSampling value) { return encode(value).get<std::string>(); }
 std::string text(const CameraDescription& camera) {
   Json json = encode(camera);

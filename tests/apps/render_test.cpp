@@ -135,6 +135,7 @@ TEST(Render, HeaderTellsHowThePictureCameAbout) {
   EXPECT_EQ(header["vernier:seed"], "9");
   EXPECT_EQ(header["vernier:integrator"], "path");
   EXPECT_EQ(header["vernier:camera"], "front");
+  EXPECT_EQ(header["vernier:filter"], "box:1");
   EXPECT_EQ(header["vernier:sceneHash"].size(), 32u);
 }
 

@@ -78,6 +78,16 @@ TEST_F(Layers, FirstHitsAreWhatIsThere) {
   EXPECT_NEAR(rgb_at(albedo, size / 2, far_y).x, 0.5 * *coverage.pixel(size / 2, far_y), 1e-6);
 }
 
+TEST_F(Layers, WhatThePixelsCentreShowsIsSharpBehindALens) {
+  const LayeredImage sharp = picture("depth,position,id,coverage");
+  view_.lens_radius = 0.3f;
+  view_.focus_distance = 0.5f;
+  const LayeredImage blurred = picture("depth,position,id,coverage");
+  for (const char* channel : {"Z", "P.X", "P.Y", "P.Z", "id"})
+    EXPECT_EQ(blurred.single(channel)->values, sharp.single(channel)->values) << channel;
+  EXPECT_NE(blurred.single("coverage")->values, sharp.single("coverage")->values);
+}
+
 TEST_F(Layers, HalvesAreTwoPicturesWithThatMean) {
   const LayeredImage layered = picture("half,error,samples,variance");
   const Image mean = layered.rgb(), a = *layered.layer("half1"), b = *layered.layer("half2");

@@ -145,6 +145,15 @@ TEST(RenderSession, RefusesWhatCannotBeRendered) {
   EXPECT_THAT(with([](auto& s) { s.limits.spp = -1; }), HasSubstr("samples a pixel"));
   EXPECT_THAT(with([](auto& s) { s.limits.seconds = std::nan(""); }), HasSubstr("time limit"));
   EXPECT_THAT(with([](auto& s) { s.camera.to_world.z = {0, 0, 0}; }), HasSubstr("camera has no direction"));
+  EXPECT_THAT(with([](auto& s) { s.camera.lens_radius = -1; }), HasSubstr("lens of radius -1 m"));
+  EXPECT_THAT(with([](auto& s) { s.camera.focus_distance = 0; }), HasSubstr("focus distance of 0 m"));
+  for (const auto kind : {CameraDescription::Kind::orthographic, CameraDescription::Kind::panorama})
+    EXPECT_THAT(with([kind](auto& s) {
+                  s.camera.kind = kind;
+                  s.camera.lens_radius = 0.1f;
+                }),
+                HasSubstr("only a perspective camera has a lens"));
+  EXPECT_THAT(with([](auto& s) { s.filter.width = 0; }), HasSubstr("expected 0.1 to 16"));
   EXPECT_THAT(complaint([] { RenderSession(nullptr, settings_of_room()); }), HasSubstr("needs a scene"));
   RenderSession nameless(room(""), settings_of_room());
   const TemporaryFolder folder;
@@ -168,6 +177,8 @@ TEST(RenderSession, LoadsNoOtherRender) {
   EXPECT_THAT(load(room("other"), [](auto&) {}), HasSubstr("scene was room, is other"));
   EXPECT_THAT(load(room(), [](auto& s) { s.camera.yfov = 1; }), HasSubstr("camera was"));
   EXPECT_THAT(load(room(), [](auto& s) { s.camera.to_world.origin.x = 0.1f; }), HasSubstr("camera was"));
+  EXPECT_THAT(load(room(), [](auto& s) { s.camera.lens_radius = 0.1f; }), HasSubstr("camera was"));
+  EXPECT_THAT(load(room(), [](auto& s) { s.filter.width = 2; }), HasSubstr("filter was box:1, is box:2"));
   EXPECT_THAT(load(room(), [](auto& s) { s.width = 40; }), HasSubstr("size was 36x20, is 40x20"));
   EXPECT_THAT(load(room(), [](auto& s) { s.integrator_options.russian_roulette = false; }),
               HasSubstr("roulette was on, is off"));
@@ -188,12 +199,20 @@ TEST(RenderSettingsJson, HoldsAllThatSamplesDependOn) {
   settings.adaptive = false;
   settings.seed = 0xfedcba9876543210u;
   settings.camera.name = "b\"ack";
-  settings.camera.kind = CameraDescription::Kind::orthographic;
+  settings.camera.kind = CameraDescription::Kind::panorama;
+  settings.camera.lens_radius = 0.25f;
+  settings.camera.focus_distance = std::numeric_limits<float>::infinity();
+  settings.filter = {PixelFilter::Kind::gaussian, 2.5f};
   settings.limits = {.spp = 3, .seconds = 4.5, .error = 0.01};
   const RenderSettings again = RenderSettings::from_json(settings.to_json());
   EXPECT_EQ(again.to_json(), settings.to_json());
   EXPECT_EQ(identity_of(again), identity_of(settings));
   EXPECT_EQ(again.seed, settings.seed);
+  EXPECT_EQ(again.camera.kind, CameraDescription::Kind::panorama);
+  EXPECT_EQ(again.camera.lens_radius, 0.25f);
+  EXPECT_TRUE(std::isinf(again.camera.focus_distance));
+  EXPECT_EQ(again.filter.kind, PixelFilter::Kind::gaussian);
+  EXPECT_EQ(again.filter.width, 2.5f);
   EXPECT_EQ(again.limits.seconds, 4.5);
   EXPECT_TRUE(std::isinf(RenderSettings::from_json(settings_of_room().to_json()).limits.seconds));
 }

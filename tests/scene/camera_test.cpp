@@ -21,10 +21,11 @@ CameraDescription turned(CameraDescription::Kind kind) {
 
 TEST(Camera, ProjectUndoesRay) {
   Random random(5);
-  for (const auto kind : {CameraDescription::Kind::perspective, CameraDescription::Kind::orthographic}) {
+  using Kind = CameraDescription::Kind;
+  for (const auto kind : {Kind::perspective, Kind::orthographic, Kind::panorama}) {
     const Camera camera(turned(kind), 1920, 817);
     for (int i = 0; i < 1000; ++i) {
-      const Vec2f u = random.next2(), raster(u.x * 1920, u.y * 817);
+      const Vec2f u = random.next2(), raster(u.x * 1920, 50 + u.y * 717);  // off the poles
       const Ray ray = camera.ray(raster);
       EXPECT_NEAR(length(ray.direction), 1, 1e-6);
       const auto back = camera.project(ray.at(0.5f + 20 * random.next1()));
@@ -32,7 +33,7 @@ TEST(Camera, ProjectUndoesRay) {
       EXPECT_NEAR(back->x, raster.x, 1e-3);
       EXPECT_NEAR(back->y, raster.y, 1e-3);
     }
-    EXPECT_FALSE(camera.project(camera.ray({960, 400}).at(-1)));
+    EXPECT_EQ(camera.project(camera.ray({960, 400}).at(-1)).has_value(), kind == Kind::panorama);
   }
 }
 
@@ -54,6 +55,49 @@ TEST(Camera, Orientation) {
   EXPECT_LT(length(flat.ray({300, 0}).origin - flat.ray({0, 0}).origin) - 12, 1e-5f);
   EXPECT_LT(length(flat.ray({0, 100}).origin - flat.ray({0, 0}).origin) - 4, 1e-5f);
   EXPECT_EQ(flat.ray({0, 0}).direction, flat.ray({300, 100}).direction);
+}
+
+// As EnvironmentDescription has it: u = atan2(z, x) / 2pi + 1/2, v = acos(y) / pi.
+TEST(Camera, PanoramasAreLaidOutAsEnvironments) {
+  CameraDescription description;
+  description.kind = CameraDescription::Kind::panorama;
+  description.to_world.origin = {1, 2, 3};
+  const Camera camera(description, 200, 100);
+  Random random(6);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec2f u = random.next2();
+    const Ray ray = camera.ray({u.x * 200, u.y * 100});
+    EXPECT_EQ(ray.origin, description.to_world.origin);
+    EXPECT_NEAR(std::atan2(ray.direction.z, ray.direction.x) / (2 * pi) + 0.5f, u.x,
+                1e-4 / (u.y * (1 - u.y)));
+    EXPECT_NEAR(std::acos(ray.direction.y) / pi, u.y, 1e-3);
+    EXPECT_EQ(camera.depth(ray, 3), 3) << "along the ray";
+  }
+  // Beyond the upper end it goes on behind the pole.
+  EXPECT_LT(length(camera.ray({70, -5}).direction - camera.ray({170, 5}).direction), 1e-5f);
+}
+
+TEST(Camera, RaysThroughALensMeetInTheFocusPlane) {
+  CameraDescription description = turned(CameraDescription::Kind::perspective);
+  EXPECT_FALSE(Camera(description, 640, 480).has_lens());
+  description.lens_radius = 0.2f;
+  description.focus_distance = 3;
+  const Camera camera(description, 640, 480);
+  ASSERT_TRUE(camera.has_lens());
+  Random random(7);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec2f u = random.next2(), raster(u.x * 640, u.y * 480), on_lens = random.next2() * 2 - Vec2f(1, 1);
+    const Ray axial = camera.ray({320, 240}), center = camera.ray(raster), ray = camera.ray(raster, on_lens);
+    const auto at_focus = [&](const Ray& r) { return r.at(3 / dot(r.direction, axial.direction)); };
+    EXPECT_LT(length(at_focus(ray) - at_focus(center)), 1e-5f);
+    EXPECT_NEAR(length(ray.origin - description.to_world.origin), 0.2f * on_lens.length(), 1e-6);
+    EXPECT_NEAR(dot(ray.origin - description.to_world.origin, axial.direction), 0, 1e-6);
+    EXPECT_NEAR(length(ray.direction), 1, 1e-6);
+    EXPECT_NEAR(camera.depth(center, 2), 2 * dot(center.direction, axial.direction), 1e-6);
+  }
+  description.focus_distance = std::numeric_limits<float>::infinity();
+  const Camera far_off(description, 640, 480);
+  EXPECT_LT(length(far_off.ray({50, 60}, {0.3f, 0.4f}).direction - far_off.ray({50, 60}).direction), 1e-6f);
 }
 
 // The pixels' solid angles add up to that of the picture, 4 asin(a b / sqrt((1 + a^2)(1 + b^2))).
