@@ -111,7 +111,7 @@ float find_focus(const RenderSettings& settings, const std::string& asked, const
 
 void add_lens_flags(CLI::App& command, LensFlags& flags) {
   command.add_option("--fstop", flags.fstop, "blur what is out of focus by a lens of this f-number: 2.8")
-      ->check(real_number(1e-3, 1e6))
+      ->transform(real_number(1e-3, 1e6))
       ->type_name("N");
   command
       .add_option("--focus", flags.focus,
@@ -122,7 +122,7 @@ void add_lens_flags(CLI::App& command, LensFlags& flags) {
   command
       .add_option("--sensor", flags.sensor,
                   "width of the sensor, on the picture's longer side (36, full frame)")
-      ->check(real_number(1e-3, 1e6))
+      ->transform(real_number(1e-3, 1e6))
       ->type_name("MM");
 }
 
