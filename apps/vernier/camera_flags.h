@@ -19,6 +19,7 @@ struct CameraFlags {
   std::optional<float> fov;
   bool ortho = false;
   std::optional<float> ortho_height;  ///< metres
+  bool turns = false;                 ///< the scene is seen from all around
 
   /// Whether the camera is to stand where the scene fits the picture.
   bool orbits() const { return azimuth || elevation || !fit.empty(); }

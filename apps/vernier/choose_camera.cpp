@@ -11,6 +11,7 @@
 #include "core/base/quantities.h"
 #include "scene/framing.h"
 #include "scene/subject.h"
+#include "scene/turntable.h"
 #include "vernier/error.h"
 
 namespace vernier::apps {
@@ -148,6 +149,23 @@ std::optional<CameraDescription> choose_camera(std::span<const CameraDescription
   return camera;
 }
 
+std::vector<std::optional<CameraDescription>> all_cameras(std::span<const CameraDescription> cameras,
+                                                          NoticeLog& log) {
+  std::vector<std::optional<CameraDescription>> usable;
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    const auto same_name = [&](const CameraDescription& other) { return other.name == cameras[i].name; };
+    if (!cameras[i].defect.empty()) {
+      log.add({Notice::Severity::warning, {}, fmt::format("{}; it is left out", cameras[i].defect)});
+      continue;
+    }
+    usable.emplace_back(cameras[i]);
+    if (cameras[i].name.empty() || std::count_if(cameras.begin(), cameras.end(), same_name) > 1)
+      usable.back()->name = std::to_string(i);
+  }
+  if (usable.empty()) throw Error(ErrorKind::input, cameras[0].defect);
+  return usable;
+}
+
 CameraDescription place_camera(const std::optional<CameraDescription>& chosen, const CameraFlags& flags,
                                const SceneGeometry& geometry, float aspect, NoticeLog& log) {
   const Subject subject(geometry);
@@ -162,7 +180,9 @@ CameraDescription place_camera(const std::optional<CameraDescription>& chosen, c
     roll(camera, flags.roll * pi / 180);
   } else {
     note_fitting(flags, subject, log);
-    camera = fitted_camera(subject, aspect > 0 ? aspect : default_aspect, view_of(flags));
+    const float shape = aspect > 0 ? aspect : default_aspect;
+    camera = flags.turns ? fitted_turntable_camera(subject, shape, view_of(flags))
+                         : fitted_camera(subject, shape, view_of(flags));
   }
   adjust_lens(camera, flags, seen);
   return camera;

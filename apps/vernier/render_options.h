@@ -31,7 +31,7 @@ struct RenderRequest {
   std::optional<Surroundings> surroundings;  ///< none: left to the scene
 };
 
-/// Checks names, sizes, outputs and reads the surroundings. Throws Error.
+/// Checks names and sizes, and reads the surroundings. Files: run_plan.h. Throws Error.
 RenderRequest check_render_flags(const RenderFlags& flags);
 
 MemoryUse memory_use(const RenderRequest& request);

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/vernier/notice_log.h"
+#include "apps/vernier/render_options.h"
+#include "apps/vernier/render_report.h"
+#include "apps/vernier/run_plan.h"
+#include "scene/scene.h"
+#include "vernier/scene_file.h"
+
+namespace vernier::apps {
+
+/// From where a picture is taken.
+struct View {
+  CameraDescription camera;
+  std::string label;         ///< {camera}
+  bool is_of_scene = false;  ///< rather than fitted or placed by flags
+  std::optional<int> side;   ///< number of the picture of a turntable
+};
+
+/// A scene at one time and in one variant, ready for pictures by any camera.
+class PosedScene {
+ public:
+  /// Builds the scene, after seeing that it has the cameras asked for. Throws Error.
+  PosedScene(const RenderFlags& flags, const RunPlan& plan, SceneDescription description, NoticeLog& log);
+
+  /// Every camera and side that the plan has. Throws Error.
+  std::vector<View> views(const RenderFlags& flags, const RunPlan& plan, NoticeLog& log) const;
+  /// Puts the surroundings around it that a picture by this camera needs, as if it were the only one, and
+  /// says what they are.
+  Surroundings surround(const RenderRequest& request, const RenderSettings& settings, NoticeLog& log);
+
+  const std::shared_ptr<Scene>& scene() const { return scene_; }
+  /// What the report of each of its pictures begins with.
+  const RenderReport& report() const { return report_; }
+  void set_load_seconds(double seconds) { report_.load_seconds = seconds; }
+
+ private:
+  RenderReport report_;
+  std::vector<std::optional<CameraDescription>> chosen_;  ///< cameras, none: one is fitted
+  std::shared_ptr<const EnvironmentDescription> own_;     ///< environment of the scene itself
+  std::shared_ptr<Scene> scene_;
+  std::optional<Surroundings> surroundings_;  ///< that are around it now
+};
+
+/// Reads a scene for all of its pictures.
+class SceneLoader {
+ public:
+  /// `is_posed_again`: more than one pose() will follow, so the file is kept in memory.
+  SceneLoader(const std::string& scene, const RenderRequest& request, bool is_posed_again);
+
+  std::vector<std::string> variants() const { return file_->variants(); }
+  /// Reads what has not been read yet, and builds the scene.
+  std::unique_ptr<PosedScene> pose(const RenderFlags& flags, const RunPlan& plan, NoticeLog& log);
+
+ private:
+  const RenderRequest& request_;
+  std::optional<SceneFile> file_;
+  double load_seconds_ = 0;  ///< of the file, until a scene is made of it
+};
+
+}  // namespace vernier::apps
