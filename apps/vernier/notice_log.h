@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -22,12 +23,12 @@ class NoticeLog {
     scene_ = scene;
     detail_ = time;
     notices_.clear();
-    of_pose_ = 0;
+    of_pose_.reset();
   }
   /// From here on notices are kept for one picture of it, beside those since begin_pose().
   void begin_picture(const std::string& picture) {
-    if (of_pose_ == 0) of_pose_ = notices_.size();
-    notices_.resize(of_pose_);
+    if (!of_pose_) of_pose_ = notices_.size();
+    notices_.resize(*of_pose_);
     detail_ = picture;
   }
 
@@ -39,7 +40,7 @@ class NoticeLog {
  private:
   bool quiet_;
   std::string scene_, detail_;
-  size_t of_pose_ = 0;  ///< notices that each of its pictures has
+  std::optional<size_t> of_pose_;  ///< notices that each of its pictures has; none: there is no picture yet
   std::set<std::string> seen_;
   std::vector<Notice> notices_;
 };

@@ -65,11 +65,10 @@ Surroundings PosedScene::surround(const RenderRequest& request, const RenderSett
   return *surroundings_;
 }
 
-SceneLoader::SceneLoader(const std::string& scene, const RenderRequest& request, bool is_posed_again)
-    : request_(request) {
-  if (!is_posed_again) return;
+void SceneLoader::open(const std::string& scene) {
+  if (file_) return;
   Stopwatch watch;
-  file_.emplace(scene, request.flags.import.allow_outside_files);
+  file_.emplace(scene, request_.flags.import.allow_outside_files);
   load_seconds_ = watch.lap();
 }
 
@@ -81,7 +80,7 @@ std::unique_ptr<PosedScene> SceneLoader::pose(const RenderFlags& flags, const Ru
   log.add(description.notices);
   const double seconds = std::exchange(load_seconds_, 0) + watch.lap();
   auto posed = std::make_unique<PosedScene>(flags, plan, std::move(description), log);
-  posed->set_load_seconds(seconds);
+  posed->add_load_seconds(seconds);
   return posed;
 }
 

@@ -38,7 +38,9 @@ class PosedScene {
   const std::shared_ptr<Scene>& scene() const { return scene_; }
   /// What the report of each of its pictures begins with.
   const RenderReport& report() const { return report_; }
-  void set_load_seconds(double seconds) { report_.load_seconds = seconds; }
+  void add_load_seconds(double seconds) { report_.load_seconds += seconds; }
+  /// From the second picture on nothing is loaded or built.
+  void forget_seconds() { report_.load_seconds = report_.build_seconds = 0; }
 
  private:
   RenderReport report_;
@@ -51,9 +53,11 @@ class PosedScene {
 /// Reads a scene for all of its pictures.
 class SceneLoader {
  public:
-  /// `is_posed_again`: more than one pose() will follow, so the file is kept in memory.
-  SceneLoader(const std::string& scene, const RenderRequest& request, bool is_posed_again);
+  explicit SceneLoader(const RenderRequest& request) : request_(request) {}
 
+  /// Reads the file to keep it in memory, for several descriptions of it. Throws Error(input).
+  void open(const std::string& scene);
+  /// Of an open file.
   std::vector<std::string> variants() const { return file_->variants(); }
   /// Reads what has not been read yet, and builds the scene.
   std::unique_ptr<PosedScene> pose(const RenderFlags& flags, const RunPlan& plan, NoticeLog& log);

@@ -13,6 +13,7 @@
 #include "apps/vernier/display_flags.h"
 #include "apps/vernier/flags.h"
 #include "apps/vernier/picture_output.h"
+#include "apps/vernier/stopwatch.h"
 #include "core/base/atomic_file.h"
 #include "core/base/names.h"
 #include "core/image/image_io.h"
@@ -149,6 +150,7 @@ RenderRequest check_render_flags(const RenderFlags& given) {
   if (given.outputs.empty())
     throw Error(ErrorKind::usage, "missing -o FILE (.exr, .png, .jpg); see vernier render --help");
   check_standard_output(given);
+  Stopwatch watch;
   RenderRequest request;
   request.flags = with_draft(given);
   const RenderFlags& flags = request.flags;
@@ -162,6 +164,7 @@ RenderRequest check_render_flags(const RenderFlags& given) {
   if (request.settings.width > 0) check_picture_size(request.settings, memory_use(request));
   request.display = choose_display(flags);
   request.surroundings = read_surroundings(flags.surroundings);
+  request.check_seconds = watch.lap();
   return request;
 }
 

@@ -29,6 +29,7 @@ struct RenderRequest {
   const Denoiser* denoiser = nullptr;  ///< null: none
   DisplayOptions display;
   std::optional<Surroundings> surroundings;  ///< none: left to the scene
+  double check_seconds = 0;                  ///< that all of this took
 };
 
 /// Checks names and sizes, and reads the surroundings. Files: run_plan.h. Throws Error.

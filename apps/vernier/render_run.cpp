@@ -62,16 +62,22 @@ ExitCode RenderRun::execute() {
 }
 
 void RenderRun::render_scene(const std::string& scene) {
-  SceneLoader loader(scene, request_, plan_.times.size() > 1 || plan_.all_variants);
+  SceneLoader loader(request_);
   std::vector<std::string> variants = plan_.variants;
-  if (plan_.all_variants) variants = loader.variants();
+  if (plan_.all_variants) {
+    loader.open(scene);
+    variants = loader.variants();
+  }
   if (variants.empty())
     throw Error(ErrorKind::usage, scene, {}, "has no variants of its materials; leave --variant out");
-  scene_pictures_ = variants.size() * plan_.times.size() * plan_.sides.size();
+  scene_poses_ = variants.size() * plan_.times.size();
+  scene_pictures_ = scene_poses_ * plan_.sides.size();
   for (const std::string& variant : variants)
     for (const auto& time : plan_.times) {
       if (is_over()) return;
       const PictureName name{stem_of(scene), "", variant, time};
+      if (is_pose_skipped(scene, name)) continue;
+      if (scene_poses_ > 1) loader.open(scene);
       const std::string detail = plan_.times.size() > 1 ? fmt::format("frame {}", *time)
                                  : variants.size() > 1  ? fmt::format("variant '{}'", variant)
                                                         : "";
@@ -86,10 +92,10 @@ void RenderRun::render_scene(const std::string& scene) {
 }
 
 void RenderRun::render_pose(SceneLoader& loader, const RenderFlags& flags, PictureName name) {
-  if (is_pose_skipped(flags.scene, name)) return;
   const auto posed = loader.pose(flags, plan_, log_);
+  if (done_ == 0) posed->add_load_seconds(request_.check_seconds);
   const std::vector<View> views = posed->views(flags, plan_, log_);
-  scene_pictures_ += (views.size() - plan_.sides.size()) * (scene_done_ == 0 ? plan_.times.size() : 0);
+  scene_pictures_ = scene_poses_ * views.size();
   for (size_t i = 0; i < views.size() && !is_over(); ++i) {
     const View& view = views[i];
     name.camera = view.label;
@@ -102,6 +108,7 @@ void RenderRun::render_pose(SceneLoader& loader, const RenderFlags& flags, Pictu
     } catch (...) {
       handle_failure(1);
     }
+    posed->forget_seconds();
   }
 }
 

@@ -56,7 +56,7 @@ class RenderRun {
   ExitCode code_ = ExitCode::done;
   bool is_stopped_ = false;  ///< by a signal
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  size_t scenes_left_ = 0;
+  size_t scenes_left_ = 0, scene_poses_ = 0;
   size_t scene_pictures_ = 0, scene_done_ = 0;   ///< of the scene under way
   size_t done_ = 0, rendered_ = 0, failed_ = 0;  ///< pictures; the first includes those skipped and failed
 };
