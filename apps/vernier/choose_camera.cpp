@@ -149,18 +149,20 @@ std::optional<CameraDescription> choose_camera(std::span<const CameraDescription
   return camera;
 }
 
-std::vector<std::optional<CameraDescription>> all_cameras(std::span<const CameraDescription> cameras,
-                                                          NoticeLog& log) {
-  std::vector<std::optional<CameraDescription>> usable;
+std::vector<LabelledCamera> all_cameras(std::span<const CameraDescription> cameras, NoticeLog& log) {
+  std::vector<LabelledCamera> usable;
   for (size_t i = 0; i < cameras.size(); ++i) {
-    const auto same_name = [&](const CameraDescription& other) { return other.name == cameras[i].name; };
-    if (!cameras[i].defect.empty()) {
-      log.add({Notice::Severity::warning, {}, fmt::format("{}; it is left out", cameras[i].defect)});
+    CameraDescription camera = cameras[i];
+    if (!camera.defect.empty()) {
+      log.add({Notice::Severity::warning, {}, fmt::format("{}; it is left out", camera.defect)});
       continue;
     }
-    usable.emplace_back(cameras[i]);
-    if (cameras[i].name.empty() || std::count_if(cameras.begin(), cameras.end(), same_name) > 1)
-      usable.back()->name = std::to_string(i);
+    const auto same_name = [&](const CameraDescription& other) { return other.name == camera.name; };
+    const bool is_unique = std::count_if(cameras.begin(), cameras.end(), same_name) == 1;
+    const std::string number = std::to_string(i);
+    if (camera.name.empty()) camera.name = number;
+    std::string label = is_unique ? camera.name : number;
+    usable.push_back({std::move(camera), std::move(label)});
   }
   if (usable.empty()) throw Error(ErrorKind::input, cameras[0].defect);
   return usable;

@@ -20,10 +20,15 @@ namespace vernier::apps {
 std::optional<CameraDescription> choose_camera(std::span<const CameraDescription> cameras,
                                                const CameraFlags& flags, NoticeLog& log);
 
-/// All cameras of a scene but those with a defect, of which a notice tells. Each has a name of its own: its
-/// number where the file gives it none, or gives it to another as well.
-std::vector<std::optional<CameraDescription>> all_cameras(std::span<const CameraDescription> cameras,
-                                                          NoticeLog& log);
+/// One of several cameras of a scene.
+struct LabelledCamera {
+  std::optional<CameraDescription> camera;  ///< none: it is to be placed yet
+  std::string label;                        ///< that no other has: its name, or else its number
+};
+
+/// All cameras of a scene but those with a defect, of which a notice tells. Throws Error(input) when there is
+/// no other.
+std::vector<LabelledCamera> all_cameras(std::span<const CameraDescription> cameras, NoticeLog& log);
 
 /// The camera to render with: `chosen`, or without one a camera called "look-from" that stands where the
 /// flags say, or one called "fitted" that sees the scene's subject whole, for a turntable however it is

@@ -5,7 +5,6 @@
 #include <numbers>
 #include <utility>
 
-#include "apps/vernier/choose_camera.h"
 #include "apps/vernier/scene_summary.h"
 #include "apps/vernier/stopwatch.h"
 #include "scene/subject.h"
@@ -33,8 +32,10 @@ PosedScene::PosedScene(const RenderFlags& flags, const RunPlan& plan, SceneDescr
   report_.scene_hash = description.hash;
   report_.counts = count(description);
   const auto& cameras = description.cameras;
-  chosen_ = plan.all_cameras && !cameras.empty() ? all_cameras(cameras, log)
-                                                 : std::vector{choose_camera(cameras, flags.camera, log)};
+  if (plan.all_cameras && !cameras.empty())
+    chosen_ = all_cameras(cameras, log);
+  else
+    chosen_ = {{choose_camera(cameras, flags.camera, log), ""}};
   Stopwatch watch;
   scene_ = build_scene(std::move(description), {flags.accelerator});
   report_.build_seconds = watch.lap();
@@ -46,10 +47,11 @@ std::vector<View> PosedScene::views(const RenderFlags& flags, const RunPlan& pla
   const float aspect = asked_aspect(flags.size);
   const Vec3f center = Subject(scene_->geometry()).bounds_to_see().center();
   std::vector<View> views;
-  for (const auto& camera : chosen_) {
+  for (const auto& [camera, label] : chosen_) {
     View view;
     view.camera = place_camera(camera, flags.camera, scene_->geometry(), aspect, log);
-    view.label = view.camera.name;
+    view.front = view.camera;
+    view.label = label.empty() ? view.camera.name : label;
     view.is_of_scene = camera.has_value();
     add_sides(view, center, plan, views);
   }
@@ -57,11 +59,17 @@ std::vector<View> PosedScene::views(const RenderFlags& flags, const RunPlan& pla
 }
 
 Surroundings PosedScene::surround(const RenderRequest& request, const RenderSettings& settings,
-                                  NoticeLog& log) {
-  if (surroundings_ && request.surroundings && !request.surroundings->turns_with_camera)
-    return *surroundings_;
-  if (surroundings_ && surroundings_->environment) scene_->surround(own_);
-  surroundings_ = apps::surround(*scene_, request.surroundings, settings.camera, settings, log);
+                                  const View& view, NoticeLog& log) {
+  const std::optional<Surroundings>& asked = request.surroundings;
+  if (surroundings_ && asked && !asked->turns_with_camera) return *surroundings_;
+  const bool is_decided = !asked && view.side && decided_by_ == view.front.to_world;
+  if (!is_decided) {
+    if (surroundings_ && surroundings_->environment) scene_->surround(own_);
+    surroundings_ = apps::surround(*scene_, asked, asked ? view.camera : view.front, settings, log);
+    decided_by_ = view.front.to_world;
+  }
+  if (!asked && view.side && surroundings_->environment)
+    scene_->surround(built_in_environment(surroundings_->name, view.camera));
   return *surroundings_;
 }
 

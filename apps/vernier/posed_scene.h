@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/vernier/choose_camera.h"
 #include "apps/vernier/notice_log.h"
 #include "apps/vernier/render_options.h"
 #include "apps/vernier/render_report.h"
@@ -21,6 +22,7 @@ struct View {
   std::string label;         ///< {camera}
   bool is_of_scene = false;  ///< rather than fitted or placed by flags
   std::optional<int> side;   ///< number of the picture of a turntable
+  CameraDescription front;   ///< camera that a turntable begins with; without one, the same
 };
 
 /// A scene at one time and in one variant, ready for pictures by any camera.
@@ -31,9 +33,10 @@ class PosedScene {
 
   /// Every camera and side that the plan has. Throws Error.
   std::vector<View> views(const RenderFlags& flags, const RunPlan& plan, NoticeLog& log) const;
-  /// Puts the surroundings around it that a picture by this camera needs, as if it were the only one, and
-  /// says what they are.
-  Surroundings surround(const RenderRequest& request, const RenderSettings& settings, NoticeLog& log);
+  /// Puts the surroundings around it that a picture by this view needs, as if it were the only one, and says
+  /// what they are. Whether a turntable needs a studio is told by its front, so that all of it has the same.
+  Surroundings surround(const RenderRequest& request, const RenderSettings& settings, const View& view,
+                        NoticeLog& log);
 
   const std::shared_ptr<Scene>& scene() const { return scene_; }
   /// What the report of each of its pictures begins with.
@@ -44,10 +47,11 @@ class PosedScene {
 
  private:
   RenderReport report_;
-  std::vector<std::optional<CameraDescription>> chosen_;  ///< cameras, none: one is fitted
-  std::shared_ptr<const EnvironmentDescription> own_;     ///< environment of the scene itself
+  std::vector<LabelledCamera> chosen_;
+  std::shared_ptr<const EnvironmentDescription> own_;  ///< environment of the scene itself
   std::shared_ptr<Scene> scene_;
   std::optional<Surroundings> surroundings_;  ///< that are around it now
+  std::optional<Transform> decided_by_;       ///< front of the turntable that they were chosen for
 };
 
 /// Reads a scene for all of its pictures.

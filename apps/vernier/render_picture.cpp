@@ -55,7 +55,7 @@ void prepare(const RenderRequest& request, PosedScene& posed, const View& view, 
   report.camera = view.camera.name;
   fill_in_size(settings, settings.camera);
   check_picture_size(settings, memory_use(request));
-  if (shows_light(request.flags)) report.surroundings = posed.surround(request, settings, log);
+  if (shows_light(request.flags)) report.surroundings = posed.surround(request, settings, view, log);
   log.add(posed.scene()->notices());
   if (request.flags.import.strict) refuse_warnings(request.flags.scene, posed.scene()->notices());
 }
