@@ -118,7 +118,7 @@ void roll(CameraDescription& camera, float angle) {
   place.z = back;
 }
 
-CameraDescription fitted_camera(const Subject& subject, float aspect, const FittedView& view) {
+CameraDescription aimed_camera(const Subject& subject, const FittedView& view) {
   CameraDescription camera;
   camera.name = "fitted";
   camera.yfov = view.yfov;
@@ -130,13 +130,17 @@ CameraDescription fitted_camera(const Subject& subject, float aspect, const Fitt
     if (const auto normal = subject.flat_normal(camera.to_world.z))
       turn(camera, *normal, std::abs(normal->y) < 0.99f ? Vec3f(0, 1, 0) : Vec3f(0, 0, -normal->y));
   roll(camera, view.roll);
+  return camera;
+}
+
+CameraDescription fitted_camera(const Subject& subject, float aspect, const FittedView& view) {
   const Bounds seen = subject.bounds_to_see();
   const FarthestPoint farthest = [&](const Vec3f& direction) {
     if (!subject.empty()) return subject.farthest(direction);
     return Vec3f(direction.x > 0 ? seen.upper.x : seen.lower.x, direction.y > 0 ? seen.upper.y : seen.lower.y,
                  direction.z > 0 ? seen.upper.z : seen.lower.z);
   };
-  return fit_camera(camera, farthest, aspect, view.margin);
+  return fit_camera(aimed_camera(subject, view), farthest, aspect, view.margin);
 }
 
 CameraDescription fitted_camera(const Scene& scene, float aspect, const FittedView& view) {

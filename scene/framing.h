@@ -24,6 +24,8 @@ void turn(CameraDescription& camera, const Vec3f& back, const Vec3f& up);
 void roll(CameraDescription& camera, float angle);
 
 class Subject;
+/// A camera called "fitted" that is turned as the view says, and still to be put somewhere.
+CameraDescription aimed_camera(const Subject& subject, const FittedView& view);
 /// A camera called "fitted" that sees the subject whole.
 CameraDescription fitted_camera(const Subject& subject, float aspect, const FittedView& view);
 

@@ -136,7 +136,9 @@ void Scene::add_environment(std::shared_ptr<const EnvironmentDescription> descri
 void Scene::surround(std::shared_ptr<const EnvironmentDescription> description) {
   auto lights = std::move(lights_).release();
   if (environment_) lights.pop_back();  // it is always the last
-  add_environment(std::move(description), lights);
+  environment_ = nullptr;
+  environment_index_ = -1;
+  if (description) add_environment(std::move(description), lights);
   lights_ = LightSet(std::move(lights));
 }
 

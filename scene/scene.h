@@ -25,7 +25,7 @@ class Scene {
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
-  /// Puts an environment around the scene, in place of the one it has, if any. Not
+  /// Puts an environment around the scene, in place of the one it has, if any; null: nothing. Not
   /// while other threads use the scene: what surroundings it needs is told by looking at it.
   void surround(std::shared_ptr<const EnvironmentDescription> description);
   bool has_environment() const { return environment_ != nullptr; }

@@ -25,6 +25,14 @@ class Subject {
   Bounds bounds_to_see() const;
   /// The corner of a triangle that lies farthest in a direction. The subject must not be empty.
   Vec3f farthest(const Vec3f& direction) const;
+  /// Calls visit(p) for every corner of a triangle, in the world and in no stated order.
+  template <typename Visit>
+  void for_each_corner(const Visit& visit) const {
+    for (const Part& part : parts_)
+      for (uint32_t i = 0; i < geometry_.triangle_count(part.instance); ++i)
+        for (const Vec3f& p : geometry_.triangle(part.instance, i))
+          if (is_finite(p)) visit(p);
+  }
   /// Unit normal of a subject that is as good as flat, a card: on the side of its fronts, or toward `viewer`
   /// where it has as many on both.
   std::optional<Vec3f> flat_normal(const Vec3f& viewer) const;

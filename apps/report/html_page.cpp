@@ -137,7 +137,8 @@ void HtmlPage::figures(const std::vector<Figure>& figures) {
         "<figure{}><img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">"
         "<figcaption>{}</figcaption></figure>\n",
         figure.pixelated || figure.picture.width < small_picture ? " class=\"pixelated\"" : "",
-        figure.picture.width, figure.picture.height, caption, base64(encode_png(figure.picture)), caption);
+        figure.picture.width, figure.picture.height, caption, base64(encode_image8("png", figure.picture)),
+        caption);
   }
   body_ += "</div>\n";
 }

@@ -13,6 +13,15 @@
 #include "integrators/render/checkpoint.h"
 
 namespace vernier::apps {
+namespace {
+
+/// So that a job that may be killed and started again is one command.
+bool begins_anew(const RenderFlags& flags) {
+  std::error_code error;
+  return flags.resume == flags.checkpoint && !std::filesystem::exists(flags.resume, error);
+}
+
+}  // namespace
 
 void add_checkpoint_flags(CLI::App& command, RenderFlags& flags) {
   command.option_defaults()->group("Long renders");
@@ -30,19 +39,18 @@ void add_checkpoint_flags(CLI::App& command, RenderFlags& flags) {
       ->type_name("FILE");
 }
 
+void require_resumable(const RenderFlags& flags) {
+  if (!flags.resume.empty() && !begins_anew(flags)) require_checkpoint(flags.resume);
+}
+
 Checkpointing::Checkpointing(const RenderFlags& flags, NoticeLog& log) : flags_(flags), log_(log) {
-  if (!flags.checkpoint.empty()) check_writable(flags.checkpoint);
   if (flags.resume.empty()) return;
-  // So that a job that may be killed and started again is one command.
-  std::error_code error;
-  if (flags.resume == flags.checkpoint && !std::filesystem::exists(flags.resume, error)) {
+  require_resumable(flags);
+  resumes_ = !begins_anew(flags);
+  if (!resumes_)
     log.add({Notice::Severity::info,
              {},
              fmt::format("{} is not there yet; rendering from the beginning", flags.resume)});
-    return;
-  }
-  resumes_ = true;
-  require_checkpoint(flags.resume);
 }
 
 void Checkpointing::attach(RenderSession& session) {

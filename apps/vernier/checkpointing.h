@@ -14,10 +14,13 @@ namespace vernier::apps {
 /// Declares --checkpoint and --resume on `command`.
 void add_checkpoint_flags(CLI::App& command, RenderFlags& flags);
 
+/// Throws Error(input) unless the checkpoint to resume from is there, or is the one that will be written.
+void require_resumable(const RenderFlags& flags);
+
 /// What they ask of one render.
 class Checkpointing {
  public:
-  /// Sees that a checkpoint can be written, and that there is one to resume from. Throws Error.
+  /// Throws Error as require_resumable() does.
   Checkpointing(const RenderFlags& flags, NoticeLog& log);
 
   /// Lets `session` go on from the checkpoint and write new ones. Throws Error(input) when the checkpoint is

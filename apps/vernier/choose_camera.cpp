@@ -11,6 +11,7 @@
 #include "core/base/quantities.h"
 #include "scene/framing.h"
 #include "scene/subject.h"
+#include "scene/turntable.h"
 #include "vernier/error.h"
 
 namespace vernier::apps {
@@ -157,6 +158,25 @@ std::optional<CameraDescription> choose_camera(std::span<const CameraDescription
   return camera;
 }
 
+std::vector<LabelledCamera> all_cameras(std::span<const CameraDescription> cameras, NoticeLog& log) {
+  std::vector<LabelledCamera> usable;
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    CameraDescription camera = cameras[i];
+    if (!camera.defect.empty()) {
+      log.add({Notice::Severity::warning, {}, fmt::format("{}; it is left out", camera.defect)});
+      continue;
+    }
+    const auto same_name = [&](const CameraDescription& other) { return other.name == camera.name; };
+    const bool is_unique = std::count_if(cameras.begin(), cameras.end(), same_name) == 1;
+    const std::string number = std::to_string(i);
+    if (camera.name.empty()) camera.name = number;
+    std::string label = is_unique ? camera.name : number;
+    usable.push_back({std::move(camera), std::move(label)});
+  }
+  if (usable.empty()) throw Error(ErrorKind::input, cameras[0].defect);
+  return usable;
+}
+
 CameraDescription place_camera(const std::optional<CameraDescription>& chosen, const CameraFlags& flags,
                                const SceneGeometry& geometry, float aspect, NoticeLog& log) {
   const Subject subject(geometry);
@@ -171,7 +191,9 @@ CameraDescription place_camera(const std::optional<CameraDescription>& chosen, c
     roll(camera, flags.roll * pi / 180);
   } else {
     note_fitting(flags, subject, log);
-    camera = fitted_camera(subject, aspect > 0 ? aspect : default_aspect, view_of(flags));
+    const float shape = aspect > 0 ? aspect : default_aspect;
+    camera = flags.turns ? fitted_turntable_camera(subject, shape, view_of(flags))
+                         : fitted_camera(subject, shape, view_of(flags));
   }
   if (flags.panorama)
     look_around(camera);

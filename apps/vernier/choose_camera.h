@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "apps/vernier/camera_flags.h"
 #include "apps/vernier/notice_log.h"
@@ -19,10 +20,20 @@ namespace vernier::apps {
 std::optional<CameraDescription> choose_camera(std::span<const CameraDescription> cameras,
                                                const CameraFlags& flags, NoticeLog& log);
 
+/// One of several cameras of a scene.
+struct LabelledCamera {
+  std::optional<CameraDescription> camera;  ///< none: it is to be placed yet
+  std::string label;                        ///< that no other has: its name, or else its number
+};
+
+/// All cameras of a scene but those with a defect, of which a notice tells. Throws Error(input) when there is
+/// no other.
+std::vector<LabelledCamera> all_cameras(std::span<const CameraDescription> cameras, NoticeLog& log);
+
 /// The camera to render with: `chosen`, or without one a camera called "look-from" that stands where the
-/// flags say, or one called "fitted" that sees the scene's subject whole; then turned, widened or zoomed as
-/// asked, or made a panorama. Its lens is for fit_lens() to add. `aspect` is the picture's width over height;
-/// 0: not given. Throws Error(usage).
+/// flags say, or one called "fitted" that sees the scene's subject whole, for a turntable however it is
+/// turned; then turned, widened or zoomed as asked, or made a panorama. Its lens is for fit_lens() to add.
+/// `aspect` is the picture's width over height; 0: not given. Throws Error(usage).
 CameraDescription place_camera(const std::optional<CameraDescription>& chosen, const CameraFlags& flags,
                                const SceneGeometry& geometry, float aspect, NoticeLog& log);
 

@@ -5,6 +5,8 @@
 #include <functional>
 #include <string>
 
+#include "vernier/error.h"
+
 // The `vernier` program is main.cpp and one file a subcommand. A subcommand is added by writing its file,
 // declaring its registration function here and listing it in main.cpp.
 
@@ -20,10 +22,13 @@ enum class ExitCode {
   stopped = 5  ///< interrupted; the image so far is written
 };
 
+/// Of a process that an error of that kind ends.
+ExitCode exit_code(ErrorKind kind);
+
 /// The program while its command line is read.
 struct Program {
   CLI::App app;
-  std::string command_line;       ///< as typed, quoted where the shell needs it; goes into image headers
+  std::string command_line;       ///< as typed, quoted where the shell needs it
   std::function<ExitCode()> run;  ///< set by the chosen subcommand's callback; may throw vernier::Error
 };
 

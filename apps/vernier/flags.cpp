@@ -58,7 +58,11 @@ void add_threads_flag(CLI::App& command, unsigned& threads) {
 }
 
 void add_scene_flags(CLI::App& command, std::string& scene, ImportOptions& options) {
-  command.add_option("SCENE", scene, "glTF 2.0 scene (.gltf, .glb)")->type_name("");
+  command.add_option("SCENE", scene, "glTF 2.0 scene (.gltf, .glb); - is standard input")->type_name("");
+  add_import_flags(command, options);
+}
+
+void add_import_flags(CLI::App& command, ImportOptions& options) {
   const std::string group = command.option_defaults()->get_group();
   command.option_defaults()->group("Scene");
   command.add_option("--variant", options.variant, "of the materials, by name (KHR_materials_variants)")
@@ -84,7 +88,9 @@ void require_separate_files(const std::vector<std::string>& read, const std::vec
     return unknown || file.empty() ? file : path.string();
   };
   std::set<std::string> inputs, outputs;
-  for (const auto& file : read) inputs.insert(place(file));
+  const std::string standard_stream = "-";  // of which there are two
+  for (const auto& file : read)
+    if (file != standard_stream) inputs.insert(place(file));
   for (const auto& file : written) {
     if (file.empty()) continue;
     if (inputs.contains(place(file)))

@@ -37,6 +37,8 @@ CLI::Validator parsed_by(Parse parse) {
 
 /// SCENE, and the flags that say how it is read.
 void add_scene_flags(CLI::App& command, std::string& scene, ImportOptions& options);
+/// The latter alone.
+void add_import_flags(CLI::App& command, ImportOptions& options);
 
 /// --threads, for ThreadLimit.
 void add_threads_flag(CLI::App& command, unsigned& threads);

@@ -22,19 +22,6 @@ constexpr void (*subcommands[])(Program&) = {
     register_develop, register_merge, register_bench,  register_cli_files,
 };
 
-ExitCode exit_code(ErrorKind kind) {
-  switch (kind) {
-    case ErrorKind::usage:
-      return ExitCode::usage;
-    case ErrorKind::memory:
-      return ExitCode::memory;
-    case ErrorKind::input:
-    case ErrorKind::output:
-      break;
-  }
-  return ExitCode::input;
-}
-
 /// The subcommand that was being read when parsing failed, innermost.
 const CLI::App& innermost(const CLI::App& app) {
   const CLI::App* at = &app;
@@ -122,6 +109,20 @@ ExitCode run_program(int argc, char** argv) {
 }
 
 }  // namespace
+
+ExitCode exit_code(ErrorKind kind) {
+  switch (kind) {
+    case ErrorKind::usage:
+      return ExitCode::usage;
+    case ErrorKind::memory:
+      return ExitCode::memory;
+    case ErrorKind::input:
+    case ErrorKind::output:
+      break;
+  }
+  return ExitCode::input;
+}
+
 }  // namespace vernier::apps
 
 int main(int argc, char** argv) {

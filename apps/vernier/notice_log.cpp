@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "apps/vernier/messages.h"
@@ -10,10 +12,15 @@
 namespace vernier::apps {
 
 void NoticeLog::add(const Notice& notice) {
-  const std::string line = describe(notice);
-  if (!seen_.insert(line).second) return;
-  notices_.push_back({notice.severity, one_line(notice.place), one_line(notice.text)});
-  if (!quiet_) fmt::print(stderr, "{}\n", line);
+  const Notice kept{notice.severity, one_line(notice.place), one_line(notice.text)};
+  const auto is_same = [&](const Notice& n) { return describe(n) == describe(kept); };
+  if (std::any_of(notices_.begin(), notices_.end(), is_same)) return;
+  notices_.push_back(kept);
+  if (quiet_ || !seen_.insert(scene_ + describe(kept)).second) return;
+  std::string place;
+  for (const std::string* part : std::array<const std::string*, 3>{&scene_, &detail_, &kept.place})
+    if (!part->empty()) place += (place.empty() ? "" : ": ") + *part;
+  fmt::print(stderr, "{}\n", describe({kept.severity, place, kept.text}));
 }
 
 void NoticeLog::add(std::span<const Notice> notices) {

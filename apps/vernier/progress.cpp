@@ -21,7 +21,7 @@ std::optional<double> time_left(const RenderProgress& progress) {
 }
 
 /// "37.5 of 64 spp, 1.92 Msamples/s, 12.1 s left"
-std::string describe(const RenderProgress& progress, int spp) {
+std::string describe(const RenderProgress& progress, int spp, const PlaceInRun& place) {
   std::string text =
       fmt::format("{:.{}f}", progress.samples_per_pixel, progress.samples_per_pixel < 10 ? 1 : 0);
   if (spp > 0) text += fmt::format(" of {}", spp);
@@ -30,25 +30,28 @@ std::string describe(const RenderProgress& progress, int spp) {
     text += fmt::format(", {}samples/s", format_count(double(progress.samples) / progress.seconds));
   if (progress.error) text += fmt::format(", error {:.3g} %", 100 * progress.error->rel_rmse);
   if (const auto left = time_left(progress)) text += fmt::format(", {} left", format_seconds(*left));
+  if (place.pictures == 1) return text;
+  text += fmt::format("; picture {} of {}", place.picture, place.pictures);
+  if (const auto left = place.time_left(progress.fraction))
+    text += fmt::format(", {} left in all", format_seconds(*left));
   return text;
 }
 
-void draw_bar(const RenderProgress& progress, int spp) {
-  const std::string text = describe(progress, spp);
+void draw_bar(double fraction, const std::string& text) {
   winsize window{};
   const int columns =
       ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0 ? window.ws_col : 80;
   const int width = std::clamp(columns - static_cast<int>(text.size()) - 10, 0, 40);
-  const int filled = static_cast<int>(std::lround(progress.fraction * width));
+  const int filled = static_cast<int>(std::lround(fraction * width));
   const std::string bar =
       std::string(static_cast<size_t>(filled), '#') + std::string(static_cast<size_t>(width - filled), '.');
-  const std::string line = fmt::format("[{}] {:3.0f} % {}", bar, progress.fraction * 100, text);
+  const std::string line = fmt::format("[{}] {:3.0f} % {}", bar, fraction * 100, text);
   // Return, the line cut to the window, erase the rest of it.
   fmt::print(stderr, "\r{}\x1b[K", line.substr(0, static_cast<size_t>(std::max(columns - 1, 1))));
   std::fflush(stderr);
 }
 
-void print_json(const RenderProgress& progress) {
+void print_json(const RenderProgress& progress, const PlaceInRun& place) {
   nlohmann::ordered_json line = {
       {"event", "progress"},
       {"fraction", progress.fraction},
@@ -58,30 +61,44 @@ void print_json(const RenderProgress& progress) {
       {"rays", progress.rays.camera + progress.rays.bounce + progress.rays.shadow}};
   if (progress.error) line["rel_rmse"] = progress.error->rel_rmse;
   if (const auto left = time_left(progress)) line["seconds_left"] = *left;
+  if (place.pictures > 1) {
+    line["picture"] = place.picture;
+    line["pictures"] = place.pictures;
+    if (const auto left = place.time_left(progress.fraction)) line["seconds_left_in_all"] = *left;
+  }
   fmt::print(stderr, "{}\n", line.dump());
 }
 
 }  // namespace
 
-ProgressReporter::ProgressReporter(ProgressMode mode, const RenderSettings& options)
-    : mode_(mode), spp_(options.limits.spp) {
+std::optional<double> PlaceInRun::time_left(double fraction) const {
+  const double done = double(rendered) + fraction, left = double(pictures - picture) + 1 - fraction;
+  if (!(done > 0.001) || seconds <= 0) return {};
+  return seconds * left / done;
+}
+
+ProgressReporter::ProgressReporter(ProgressMode mode, const RenderSettings& options, const PlaceInRun& place)
+    : mode_(mode), spp_(options.limits.spp), place_(place) {
   if (mode_ == ProgressMode::automatic)
     mode_ = isatty(STDERR_FILENO) ? ProgressMode::bar : ProgressMode::lines;
 }
 
 void ProgressReporter::update(const RenderProgress& progress) {
+  PlaceInRun place = place_;
+  place.seconds += progress.seconds;
   switch (mode_) {
     case ProgressMode::bar:
-      draw_bar(progress, spp_);
+      draw_bar(progress.fraction, describe(progress, spp_, place));
       bar_drawn_ = true;
       break;
     case ProgressMode::json:
-      print_json(progress);
+      print_json(progress, place);
       break;
     case ProgressMode::lines:
       if (progress.seconds - last_line_ < seconds_between_lines) break;
       last_line_ = progress.seconds;
-      fmt::print(stderr, "rendering: {:.0f} %, {}\n", progress.fraction * 100, describe(progress, spp_));
+      fmt::print(stderr, "rendering: {:.0f} %, {}\n", progress.fraction * 100,
+                 describe(progress, spp_, place));
       break;
     case ProgressMode::automatic:
     case ProgressMode::none:

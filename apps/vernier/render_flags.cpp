@@ -82,6 +82,7 @@ void add_output_flags(CLI::App& command, RenderFlags& flags) {
       .add_option("--denoise", flags.denoise,
                   "filter the noise out before writing; 'help' lists the filters (docs/denoise.md)")
       ->type_name("FILTER");
+  add_preview_flags(command, flags.run);
   add_display_flags(command, flags.display);
   command.add_option("--stats", flags.stats, "write what was measured as JSON (docs/stats.md)")
       ->type_name("FILE");
@@ -143,11 +144,16 @@ void add_max_depth_flag(CLI::App& command, RenderFlags& flags) {
 
 void add_render_flags(CLI::App& command, RenderFlags& flags) {
   command
-      .add_option("-o,--output", flags.outputs,
-                  "picture: .exr (scene-linear), .png or .jpg (for display); may be given more than once")
+      .add_option(
+          "-o,--output", flags.outputs,
+          "picture: .exr (scene-linear), .png or .jpg (for display), - is standard output; may be given "
+          "more than once; {name}, {camera}, {variant}, {frame} and #### stand for what it is of")
       ->type_name("FILE")
       ->allow_extra_args(false);
-  add_scene_flags(command, flags.scene, flags.import);
+  command.add_option("SCENE", flags.run.scenes, "glTF 2.0 scenes (.gltf, .glb); - is standard input")
+      ->type_name("");
+  add_import_flags(command, flags.import);
+  add_run_flags(command, flags.run);
   add_quality_flags(command, flags);
   add_camera_flags(command, flags.camera);
   add_integrator_flags(command, flags);

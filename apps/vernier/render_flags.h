@@ -7,6 +7,7 @@
 
 #include "apps/vernier/camera_flags.h"
 #include "apps/vernier/commands.h"
+#include "apps/vernier/run_flags.h"
 #include "apps/vernier/surroundings.h"
 #include "core/display/display.h"
 #include "integrators/integrator.h"
@@ -16,7 +17,7 @@ namespace vernier::apps {
 
 /// The flags of `vernier render`, as typed.
 struct RenderFlags {
-  std::string scene;
+  std::string scene;  ///< of one picture; RunFlags has them all
   ImportOptions import;
   std::vector<std::string> outputs;
 
@@ -43,6 +44,8 @@ struct RenderFlags {
   std::string checkpoint, resume;  ///< files; empty: none
   std::string checkpoint_every = "5m";
   bool quiet = false, verbose = false;
+
+  RunFlags run;
 };
 
 /// Declares the flags on `command`.

@@ -12,6 +12,8 @@
 #include "apps/vernier/denoising.h"
 #include "apps/vernier/display_flags.h"
 #include "apps/vernier/flags.h"
+#include "apps/vernier/picture_output.h"
+#include "apps/vernier/stopwatch.h"
 #include "core/base/atomic_file.h"
 #include "core/base/names.h"
 #include "core/image/image_io.h"
@@ -24,7 +26,8 @@ namespace {
 
 /// Only OpenEXR holds more than a picture's colour. Denoising brings the layers that it uses.
 std::string choose_layers(const RenderFlags& flags) {
-  if (!flags.layers.empty() && std::all_of(flags.outputs.begin(), flags.outputs.end(), is_display_file))
+  const auto is_display = [&](const auto& output) { return is_display_output(output, flags.run.format); };
+  if (!flags.layers.empty() && std::all_of(flags.outputs.begin(), flags.outputs.end(), is_display))
     throw Error(ErrorKind::usage, {}, "--aov",
                 "only an .exr can hold layers; add -o FILE.exr, which may be given beside other outputs");
   std::string list = flags.layers;
@@ -78,25 +81,37 @@ bool equal_ignoring_case(std::string_view a, std::string_view b) {
                     [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
+bool has_display_output(const RenderFlags& flags) {
+  return std::any_of(flags.outputs.begin(), flags.outputs.end(),
+                     [&](const auto& output) { return is_display_output(output, flags.run.format); });
+}
+
 /// The view is the one asked for, else the config's default, but for raycast's pictures: they are data and go
 /// to the display unchanged where the config has a raw view.
 DisplayOptions choose_display(const RenderFlags& flags) {
   DisplayOptions display = flags.display;
   const bool needed = !display.view.empty() || !display.config.empty() || !flags.report.empty();
-  if (!needed && std::none_of(flags.outputs.begin(), flags.outputs.end(), is_display_file)) return display;
+  if (!needed && !has_display_output(flags)) return display;
   if (display.view.empty() && flags.integrator == "raycast")
     for (const auto& view : display_views(display))
       if (equal_ignoring_case(view, "raw")) display.view = view;
   return with_chosen_view(display);
 }
 
-/// A render may go on in the checkpoint that it came from.
-void require_separate_outputs(const RenderFlags& flags) {
-  std::vector<std::string> written = flags.outputs;
-  written.insert(written.end(), {flags.stats, flags.report, flags.checkpoint});
-  std::vector<std::string> read{flags.scene, flags.surroundings.environment, flags.display.config};
-  if (flags.resume != flags.checkpoint) read.push_back(flags.resume);
-  require_separate_files(read, written);
+/// What --draft asks for where nothing else does. Noise is all that a draft filters, and raycast has none.
+RenderFlags with_draft(RenderFlags flags) {
+  constexpr int spp = 8;
+  if (!flags.run.draft) return flags;
+  if (!flags.spp && flags.time.empty() && flags.error.empty()) flags.spp = spp;
+  if (flags.denoise.empty() && flags.integrator != "raycast") flags.denoise = "nlm";
+  return flags;
+}
+
+void check_standard_output(const RenderFlags& flags) {
+  const auto count = std::count_if(flags.outputs.begin(), flags.outputs.end(), is_standard_stream);
+  if (count > 1) throw Error(ErrorKind::usage, "-o - is given twice and standard output takes one picture");
+  if (count == 0 && !flags.run.format.empty())
+    throw Error(ErrorKind::usage, "--format needs -o -; the names of files tell their format");
 }
 
 }  // namespace
@@ -110,7 +125,7 @@ MemoryUse memory_use(const RenderRequest& request) {
     use.error_layers = use.error_layers || layer.need == LayerNeed::error;
   }
   use.denoise = request.denoiser != nullptr;
-  use.display = std::any_of(flags.outputs.begin(), flags.outputs.end(), is_display_file);
+  use.display = has_display_output(flags);
   use.report = !flags.report.empty();
   return use;
 }
@@ -132,12 +147,16 @@ void check_picture_size(const RenderSettings& options, const MemoryUse& use) {
                             format_count(pixels), format_bytes(bytes), format_bytes(memory)));
 }
 
-RenderRequest check_render_flags(const RenderFlags& flags) {
-  require_scene(flags.scene, "render");
-  if (flags.outputs.empty())
+RenderRequest check_render_flags(const RenderFlags& given) {
+  require_scene(given.run.scenes.empty() ? "" : given.run.scenes.front(), "render");
+  if (given.outputs.empty())
     throw Error(ErrorKind::usage, "missing -o FILE (.exr, .png, .jpg); see vernier render --help");
+  check_standard_output(given);
+  Stopwatch watch;
   RenderRequest request;
-  request.flags = flags;
+  request.flags = with_draft(given);
+  const RenderFlags& flags = request.flags;
+  request.flags.camera.turns = flags.run.turntable.has_value();
   if (!flags.accelerator.empty()) find_by_name(accelerators(), "accelerator", flags.accelerator);
   request.settings = make_settings(flags);
   request.progress = parse_progress(flags);
@@ -146,11 +165,8 @@ RenderRequest check_render_flags(const RenderFlags& flags) {
   if (!flags.denoise.empty()) request.denoiser = &find_denoiser(flags.denoise);
   if (request.settings.width > 0) check_picture_size(request.settings, memory_use(request));
   request.display = choose_display(flags);
-  require_separate_outputs(flags);
-  for (const auto& path : flags.outputs) check_writable_image(path);
-  for (const auto& path : {flags.stats, flags.report})
-    if (!path.empty()) check_writable(path);
   request.surroundings = read_surroundings(flags.surroundings);
+  request.check_seconds = watch.lap();
   return request;
 }
 

@@ -29,9 +29,10 @@ struct RenderRequest {
   const Denoiser* denoiser = nullptr;  ///< null: none
   DisplayOptions display;
   std::optional<Surroundings> surroundings;  ///< none: left to the scene
+  double check_seconds = 0;                  ///< that all of this took
 };
 
-/// Checks names, sizes, outputs and reads the surroundings. Throws Error.
+/// Checks names and sizes, and reads the surroundings. Files: run_plan.h. Throws Error.
 RenderRequest check_render_flags(const RenderFlags& flags);
 
 MemoryUse memory_use(const RenderRequest& request);

@@ -123,7 +123,7 @@ std::string error_text(const ErrorEstimate& error) {
 
 Metadata image_metadata(const RenderReport& report, const RenderFlags& flags, const RenderResult& result) {
   Metadata metadata = {
-      {"vernier:command", report.command_line},
+      {"vernier:command", report.picture_command},
       {"vernier:scene", report.scene_file},
       {"vernier:sceneHash", report.scene_hash},
       {"vernier:camera", report.camera},

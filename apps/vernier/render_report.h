@@ -17,7 +17,8 @@ namespace vernier::apps {
 
 /// What is known of a render when its image is written.
 struct RenderReport {
-  std::string command_line;
+  std::string command_line;     ///< as typed
+  std::string picture_command;  ///< that makes this picture alone
   std::string scene_file, scene_hash, camera, accelerator;
   std::optional<Lens> lens;  ///< none: a pinhole
   Surroundings surroundings{"none", nullptr};

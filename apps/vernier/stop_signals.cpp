@@ -7,6 +7,7 @@ namespace vernier::apps {
 namespace {
 
 std::atomic<bool> stop_requested{false};
+std::atomic<bool> write_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
 /// Ends the process by the signal that it handles, as if it had not been handled.
@@ -19,6 +20,8 @@ void clean_up(int signal) {
 void request_stop(int signal) {
   if (stop_requested.exchange(true)) clean_up(signal);
 }
+
+void request_write(int) { write_requested = true; }
 
 void install(int signal, void (*handler)(int), struct sigaction& old) {
   struct sigaction action {};
@@ -49,5 +52,18 @@ StopSignals::~StopSignals() {
 }
 
 const std::atomic<bool>& StopSignals::stop() const { return stop_requested; }
+
+WriteSignals::WriteSignals() {
+  write_requested = false;
+  install(SIGHUP, request_write, old_hang_up_);
+  install(SIGUSR1, request_write, old_user_);
+}
+
+WriteSignals::~WriteSignals() {
+  sigaction(SIGHUP, &old_hang_up_, nullptr);
+  sigaction(SIGUSR1, &old_user_, nullptr);
+}
+
+std::atomic<bool>& WriteSignals::now() const { return write_requested; }
 
 }  // namespace vernier::apps

@@ -27,4 +27,21 @@ class StopSignals {
   struct sigaction old_terminate_ {};
 };
 
+/// While it lives, SIGUSR1 and SIGHUP, which comes when a terminal goes away, ask for the picture so far to
+/// be written, and end nothing.
+class WriteSignals {
+ public:
+  WriteSignals();
+  ~WriteSignals();
+  WriteSignals(const WriteSignals&) = delete;
+  WriteSignals& operator=(const WriteSignals&) = delete;
+
+  /// For RenderSession::on_preview().
+  std::atomic<bool>& now() const;
+
+ private:
+  struct sigaction old_hang_up_ {};
+  struct sigaction old_user_ {};
+};
+
 }  // namespace vernier::apps

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "core/image/image_decode.h"
 #include "vernier/error.h"
@@ -149,6 +150,21 @@ LayeredImage read_layers(const std::string& path, const ImageLimits& limits) {
   result.metadata = texts(spec);
   result.linear = spec.format.is_floating_point();
   return result;
+}
+
+std::optional<Metadata> read_image_texts(const std::string& path) {
+  const auto input = OIIO::ImageInput::open(path);
+  if (!input) {
+    OIIO::geterror();  // which would be said to be another failure's
+    return std::nullopt;
+  }
+  Metadata metadata = texts(input->spec());
+  std::istringstream lines(metadata["ImageDescription"]);
+  constexpr std::string_view separator = ": ";
+  for (std::string line; std::getline(lines, line);)
+    if (const size_t end = line.find(separator); end != std::string::npos)
+      metadata.emplace(line.substr(0, end), line.substr(end + separator.size()));
+  return metadata;
 }
 
 Image read_image(const std::string& path, const ImageLimits& limits) {

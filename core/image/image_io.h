@@ -29,6 +29,10 @@ Image read_image(const std::string& path, const ImageLimits& limits = {});
 /// As read_image, with every channel of the file's first part.
 LayeredImage read_layers(const std::string& path, const ImageLimits& limits = {});
 
+/// The texts in the header of an image file, whose pixels are not read; empty when it is none. JPEG files
+/// hold them as lines of their description.
+std::optional<Metadata> read_image_texts(const std::string& path);
+
 /// A picture as far as its file has it.
 struct PartialImage8 {
   Image8 image;
@@ -54,8 +58,14 @@ void write_exr(const std::string& path, const Image& image, const std::vector<st
 /// PNG keeps each metadata entry as a text chunk, JPEG all of them as lines of its ImageDescription.
 void write_image8(const std::string& path, const Image8& image, const Metadata& metadata);
 
-/// The bytes of a PNG file with these display-encoded values.
-std::vector<unsigned char> encode_png(const Image8& image);
+// The bytes of such files. `format` is "png" or "jpg".
+std::vector<unsigned char> encode_exr(const Image& image, const std::vector<std::string>& channel_names,
+                                      const Metadata& metadata);
+std::vector<unsigned char> encode_image8(const std::string& format, const Image8& image,
+                                         const Metadata& metadata = {});
+
+/// Throws Error(output) unless the name ends in .exr, .png, .jpg or .jpeg.
+void check_image_name(const std::string& path);
 
 /// Throws Error(output) unless a .exr, .png, .jpg or .jpeg file can be written in that folder; called before
 /// rendering so that hours are not lost to a misspelt folder.

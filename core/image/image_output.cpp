@@ -67,8 +67,8 @@ void set_metadata(OIIO::ImageSpec& spec, const Metadata& metadata, bool as_lines
 }
 
 // Encoded in memory first: on a full disk libpng's writer says nothing and libjpeg's ends the process.
-std::vector<unsigned char> encode_image8(const std::string& path, const char* format, const Image8& image,
-                                         const Metadata& metadata) {
+std::vector<unsigned char> encode(const std::string& path, const char* format, const Image8& image,
+                                  const Metadata& metadata) {
   if (image.empty()) throw output_error(path, "image has no pixels");
   OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeUInt8);
   spec.attribute("oiio:ColorSpace", "sRGB");
@@ -85,6 +85,24 @@ std::vector<unsigned char> encode_image8(const std::string& path, const char* fo
   return bytes;
 }
 
+OIIO::ImageSpec exr_spec(const std::string& path, const Image& image,
+                         const std::vector<std::string>& channel_names, const Metadata& metadata) {
+  if (image.empty() || channel_names.size() != size_t(image.channels))
+    throw output_error(path, fmt::format("image has {} channels and {} channel names", image.channels,
+                                         channel_names.size()));
+  OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeFloat);
+  spec.channelnames = channel_names;
+  spec.alpha_channel = spec.channelindex("A");
+  spec.attribute("compression", "zip");
+  // Red, green, blue and white of Rec.709 (ITU-R BT.709-6, 1.3 and 1.4).
+  const float chromaticities[8] = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
+  spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities);
+  // An empty date is left out; without it OpenImageIO writes the time of day, and no two files are alike.
+  spec.attribute("DateTime", "");
+  set_metadata(spec, metadata, false);
+  return spec;
+}
+
 // OpenImageIO's name of the format that a path's extension asks for; null when it is none of ours.
 const char* format_of(const std::string& path) {
   std::string extension = fs::path(path).extension().string();
@@ -99,19 +117,7 @@ const char* format_of(const std::string& path) {
 
 void write_exr(const std::string& path, const Image& image, const std::vector<std::string>& channel_names,
                const Metadata& metadata) {
-  if (image.empty() || channel_names.size() != size_t(image.channels))
-    throw output_error(path, fmt::format("image has {} channels and {} channel names", image.channels,
-                                         channel_names.size()));
-  OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeFloat);
-  spec.channelnames = channel_names;
-  spec.alpha_channel = spec.channelindex("A");
-  spec.attribute("compression", "zip");
-  // Red, green, blue and white of Rec.709 (ITU-R BT.709-6, 1.3 and 1.4).
-  const float chromaticities[8] = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
-  spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities);
-  // An empty date is left out; without it OpenImageIO writes the time of day, and no two files are alike.
-  spec.attribute("DateTime", "");
-  set_metadata(spec, metadata, false);
+  const OIIO::ImageSpec spec = exr_spec(path, image, channel_names, metadata);
   AtomicFile file(path);
   AtomicFileProxy proxy(path, file);
   try {
@@ -122,22 +128,36 @@ void write_exr(const std::string& path, const Image& image, const std::vector<st
   file.commit();
 }
 
+std::vector<unsigned char> encode_exr(const Image& image, const std::vector<std::string>& channel_names,
+                                      const Metadata& metadata) {
+  const std::string name = "picture";
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  write_image(name, "openexr", exr_spec(name, image, channel_names, metadata), image.values.data(), memory);
+  return bytes;
+}
+
 void write_image8(const std::string& path, const Image8& image, const Metadata& metadata) {
   const char* format = format_of(path);
   if (!format || std::strcmp(format, "openexr") == 0)
     throw output_error(path, "cannot write 8-bit values to this kind of file; use .png or .jpg");
-  const std::vector<unsigned char> bytes = encode_image8(path, format, image, metadata);
+  const std::vector<unsigned char> bytes = encode(path, format, image, metadata);
   const std::array parts{std::as_bytes(std::span(bytes))};
   write_file(path, parts);
 }
 
-std::vector<unsigned char> encode_png(const Image8& image) {
-  return encode_image8("picture", "png", image, {});
+std::vector<unsigned char> encode_image8(const std::string& format, const Image8& image,
+                                         const Metadata& metadata) {
+  return encode("picture", format == "jpg" ? "jpeg" : format.c_str(), image, metadata);
+}
+
+void check_image_name(const std::string& path) {
+  if (!format_of(path))
+    throw output_error(path, "cannot write this kind of image; end the name in .exr, .png or .jpg");
 }
 
 void check_writable_image(const std::string& path) {
-  if (!format_of(path))
-    throw output_error(path, "cannot write this kind of image; end the name in .exr, .png or .jpg");
+  check_image_name(path);
   check_writable(path);
 }
 

@@ -38,6 +38,10 @@ class VERNIER_API RenderSession {
   void on_progress(std::function<void(const RenderProgress&)> observe);
   /// Calls back while run() holds still: every `seconds` of rendering, and at its end. For save().
   void on_checkpoint(std::function<void()> save, double seconds);
+  /// Calls back in the same way, every `seconds` of rendering and not at the end, to write() a picture of
+  /// what is there. Where `now` is given and becomes true, by a signal for instance, this and the callback
+  /// for checkpoints are called soon, and it is made false.
+  void on_preview(std::function<void()> show, double seconds, std::atomic<bool>* now = nullptr);
 
   /// Goes on to the limits. `stop` may become true at any time, from another thread or a signal handler: it
   /// ends within about a tile. Throws Error(usage) while another thread is in a call to this session.

@@ -5,6 +5,7 @@
 
 #include "vernier/error.h"
 #include "vernier/scene.h"
+#include "vernier/scene_file.h"
 #include "vernier/session.h"
 #include "vernier/settings.h"
 #include "vernier/version.h"

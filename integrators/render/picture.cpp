@@ -11,6 +11,14 @@
 #include "vernier/version.h"
 
 namespace vernier {
+namespace {
+
+void add_display(Metadata& metadata, const DisplayOptions& display) {
+  metadata["vernier:exposure"] = fmt::format("{}", display.exposure);
+  metadata["vernier:view"] = display.view;
+}
+
+}  // namespace
 
 double samples_per_pixel(const RenderResult& result) {
   return double(result.samples) / (double(result.film.width()) * result.film.height());
@@ -43,9 +51,15 @@ void write_picture(const std::string& path, const LayeredImage& picture, Metadat
     write_exr(path, picture.image, picture.channel_names, metadata);
     return;
   }
-  metadata["vernier:exposure"] = fmt::format("{}", display.exposure);
-  metadata["vernier:view"] = display.view;
+  add_display(metadata, display);
   write_image8(path, to_display(picture.rgb(), display), metadata);
+}
+
+std::vector<unsigned char> encode_picture(const std::string& format, const LayeredImage& picture,
+                                          Metadata metadata, const DisplayOptions& display) {
+  if (format == "exr") return encode_exr(picture.image, picture.channel_names, metadata);
+  add_display(metadata, display);
+  return encode_image8(format, to_display(picture.rgb(), display), metadata);
 }
 
 }  // namespace vernier

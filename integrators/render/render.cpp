@@ -51,7 +51,8 @@ class Renderer {
         seconds_before_(state_.so_far.seconds) {}
 
   void run() {
-    next_save_ = seconds() + hooks_.save_interval;
+    save_.next = seconds() + save_.interval;
+    preview_.next = seconds() + preview_.interval;
     if (state_.so_far.samples > 0) look();
     while (!reason_) {
       if (state_.pass.size() == 0) plan_pass();
@@ -59,7 +60,7 @@ class Renderer {
       if (is_pass_complete()) end_pass();
       look();
     }
-    if (hooks_.save) save();
+    if (save_.act) take(save_);
     finish();
   }
 
@@ -73,12 +74,20 @@ class Renderer {
     std::vector<BadSample> bad_sample_examples;
   };
 
+  /// Something that is done with the state now and then, while nothing is rendered.
+  struct Pause {
+    const std::function<void(const RenderState&)>& act;
+    const double interval;
+    double next = 0;                    ///< when, in seconds of rendering
+    std::atomic<bool> is_news = false;  ///< whether something has been rendered since the last one
+  };
+
   RenderResult& result() { return state_.so_far; }
   const RenderResult& result() const { return state_.so_far; }
   double samples_per_pixel() const { return double(result().samples) / (double(crop_.width) * crop_.height); }
   double seconds() const {
     const std::chrono::duration<double> running = std::chrono::steady_clock::now() - start_;
-    return seconds_before_ + running.count() - saving_;
+    return seconds_before_ + running.count() - paused_;
   }
   bool out_of_time() const { return seconds() >= options_.limits.seconds; }
 
@@ -151,15 +160,15 @@ class Renderer {
   void render_pass() {
     const uint32_t wanted = wanted_part();
     do {
-      if (is_save_due()) save();
+      if (is_pause_due()) take_pauses();
       tbb::parallel_for(0, state_.tile_count(), [&](int tile) {
         // Every pixel gets its first samples unless interrupted.
-        if (stop_ || (state_.done > 0 && out_of_time()) || is_save_due()) return;
+        if (stop_ || (state_.done > 0 && out_of_time()) || is_pause_due()) return;
         uint32_t& part = state_.parts[size_t(tile)];
         if (part < wanted) render_tile(tile, part, wanted);
         part = std::max(part, wanted);
       });
-    } while (is_save_due() && !stop_);
+    } while (is_pause_due() && !stop_);
   }
 
   /// From `part` of the pass to `wanted`.
@@ -178,18 +187,31 @@ class Renderer {
     merge(totals);
   }
 
-  /// Not before something has been done since the last one.
-  bool is_save_due() const { return unsaved_ && hooks_.save && seconds() >= next_save_; }
+  bool is_due(const Pause& pause, bool now) const {
+    return pause.act && pause.is_news && (now || seconds() >= pause.next);
+  }
+  bool is_pause_due() const {
+    const bool now = hooks_.now && *hooks_.now;
+    return is_due(save_, now) || is_due(preview_, now);
+  }
+
+  void take_pauses() {
+    const bool now = hooks_.now && hooks_.now->exchange(false);
+    if (is_due(save_, now)) take(save_);
+    if (!is_due(preview_, now)) return;
+    result().error = estimate_error(result().film);
+    take(preview_);
+  }
 
   /// The clock stands still meanwhile.
-  void save() {
+  void take(Pause& pause) {
     const double start = seconds();
     result().seconds = start;
-    hooks_.save(state_);
-    unsaved_ = false;
+    pause.act(state_);
+    pause.is_news = false;
     const double duration = seconds() - start;
-    saving_ += duration;
-    next_save_ = start + (hooks_.save_interval > 0 ? std::max(hooks_.save_interval, 20 * duration) : 0);
+    paused_ += duration;
+    pause.next = start + (pause.interval > 0 ? std::max(pause.interval, 20 * duration) : 0);
   }
 
   /// A sample of the pass under way, by its place in the crop and its number in the plan.
@@ -236,7 +258,7 @@ class Renderer {
 
   void merge(const Totals& totals) {
     const std::lock_guard lock(mutex_);
-    unsaved_ = true;
+    save_.is_news = preview_.is_news = true;
     result().samples += totals.samples;
     result().rays += totals.rays;
     result().bad_samples += totals.bad_samples;
@@ -277,9 +299,8 @@ class Renderer {
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   RenderState& state_;
   const double seconds_before_;  ///< of rendering, by those who did what state_ began with
-  double next_save_ = 0;
-  double saving_ = 0;  ///< seconds taken by saves, in which nothing was rendered
-  std::atomic<bool> unsaved_ = false;
+  Pause save_{hooks_.save, hooks_.save_interval}, preview_{hooks_.preview, hooks_.preview_interval};
+  double paused_ = 0;  ///< seconds taken by them, in which nothing was rendered
   std::optional<StopReason> reason_;
   std::mutex mutex_;
   ObserverThread observer_{hooks_.observe};

@@ -59,6 +59,11 @@ struct RenderHooks {
   /// render() while nothing is rendered; its time counts nowhere.
   std::function<void(const RenderState&)> save = {};
   double save_interval = std::numeric_limits<double>::infinity();
+  /// Gets the state in the same way, its error estimated, but not at the end.
+  std::function<void(const RenderState&)> preview = {};
+  double preview_interval = std::numeric_limits<double>::infinity();
+  /// Where it becomes true, both are called soon whatever their intervals, and it is made false. Null: never.
+  std::atomic<bool>* now = nullptr;
 };
 
 /// The whole picture where no crop is asked for.

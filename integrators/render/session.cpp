@@ -130,6 +130,14 @@ void RenderSession::on_checkpoint(std::function<void()> save, double seconds) {
   state_->hooks.save_interval = seconds;
 }
 
+void RenderSession::on_preview(std::function<void()> show, double seconds, std::atomic<bool>* now) {
+  const Use use(state_->user);
+  state_->hooks.preview = nullptr;
+  if (show) state_->hooks.preview = [show = std::move(show)](const RenderState&) { show(); };
+  state_->hooks.preview_interval = seconds;
+  state_->hooks.now = now;
+}
+
 StopReason RenderSession::run(const std::atomic<bool>& stop) {
   const Use use(state_->user);
   if (!use.is_outermost()) refuse("run() cannot be called by a callback of its own");

@@ -141,7 +141,7 @@ void pose_by_animations(const Document& document, const std::string& wanted, dou
   const std::string more = outside.size() > named ? fmt::format(" and {} more", outside.size() - named) : "";
   outside.resize(std::min(outside.size(), named));
   notices.push_back({Notice::Severity::info, "/animations",
-                     fmt::format("{:g} s lies outside of animation {}{}, whose nearest key holds", time,
+                     fmt::format("the time asked for lies outside of animation {}{}, whose nearest key holds",
                                  fmt::join(outside, ", "), more)});
 }
 

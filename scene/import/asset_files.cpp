@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <vector>
 
 #include "scene/import/data_uri.h"
 #include "vernier/error.h"
@@ -53,6 +54,24 @@ std::string read_regular_file(const std::string& path, int flags, Bytes& bytes) 
   return {};
 }
 
+/// All that standard input holds; returns what is wrong, or an empty string.
+std::string read_standard_input(Bytes& bytes) {
+  std::vector<uint8_t> all;
+  constexpr size_t block = size_t(1) << 20;
+  for (ssize_t got = 1; got != 0;) {
+    const size_t done = all.size();
+    all.resize(done + block);
+    do got = read(STDIN_FILENO, all.data() + done, block);
+    while (got < 0 && errno == EINTR);
+    if (got < 0) return std::strerror(errno);
+    all.resize(done + size_t(got));
+  }
+  if (all.empty()) return "there is nothing on it";
+  bytes = Bytes(all.size());
+  std::copy(all.begin(), all.end(), bytes.data.get());
+  return {};
+}
+
 bool has_scheme(std::string_view uri) {
   const size_t colon = uri.find(':');
   return colon != std::string_view::npos && uri.find_first_of("/?#") > colon;
@@ -84,7 +103,8 @@ AssetFiles::AssetFiles(std::string scene_path, bool allow_outside)
 
 Bytes AssetFiles::read_scene() const {
   Bytes bytes;
-  const std::string problem = read_regular_file(scene_path_, 0, bytes);
+  const std::string problem =
+      scene_path_ == standard_input ? read_standard_input(bytes) : read_regular_file(scene_path_, 0, bytes);
   if (!problem.empty()) throw Error(ErrorKind::input, scene_path_, "", "cannot be read: " + problem);
   return bytes;
 }

@@ -26,7 +26,8 @@ struct AssetContent {
 };
 
 /// Reads the scene file and what its URIs refer to, all of it regular files, and all of it inside the scene
-/// file's folder unless `allow_outside` is given. Callable from many threads.
+/// file's folder unless `allow_outside` is given. A scene called "-" comes from standard input, and is taken
+/// for a file in the current folder. Callable from many threads.
 class AssetFiles {
  public:
   /// Throws Error(input) when the scene file's folder cannot be read.
@@ -42,6 +43,8 @@ class AssetFiles {
 
  private:
   AssetContent read_reference(const std::string& uri, const std::string& place) const;
+
+  static constexpr const char* standard_input = "-";
 
   std::string scene_path_;
   std::string folder_;  ///< canonical

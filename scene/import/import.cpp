@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vernier/scene.h"
+#include "vernier/scene_file.h"
 
 #include <fmt/format.h>
 
@@ -19,14 +19,19 @@
 namespace vernier {
 namespace {
 
+template <typename T>
+void append(const std::vector<T>& more, std::vector<T>& list) {
+  list.insert(list.end(), more.begin(), more.end());
+}
+
 /// Keeps the materials that instances use, in the file's order, and renumbers the instances.
-void keep_used_materials(std::vector<ImportedMaterial> all, SceneDescription& scene) {
+void keep_used_materials(const std::vector<ImportedMaterial>& all, SceneDescription& scene) {
   std::vector<uint32_t> renumbered(all.size(), 0);
   for (const auto& instance : scene.instances) renumbered[instance.material] = 1;
   for (size_t i = 0; i < all.size(); ++i) {
     if (!renumbered[i]) continue;
     renumbered[i] = uint32_t(scene.materials.size());
-    scene.materials.push_back(std::move(all[i].description));
+    scene.materials.push_back(all[i].description);
   }
   for (auto& instance : scene.instances) instance.material = renumbered[instance.material];
 }
@@ -61,14 +66,14 @@ std::vector<WantedTexture> used_textures(const std::vector<MaterialDescription>&
 
 /// Decodes the textures that the scene's materials use and renumbers their uses.
 void add_textures(const Document& document, const std::vector<RoughnessFromGlossiness>& derived,
-                  SceneDescription& scene, std::vector<std::string>& fingerprints) {
+                  ImageCache& images, SceneDescription& scene, std::vector<std::string>& fingerprints) {
   const std::vector<WantedTexture> wanted = used_textures(scene.materials);
   std::map<int, int> places;
   for (const WantedTexture& texture : wanted) places.emplace(texture.index, int(places.size()));
 
-  DecodedTextures decoded = read_textures(document, wanted, derived, scene.notices);
+  DecodedTextures decoded = read_textures(document, wanted, derived, images, scene.notices);
   scene.textures = std::move(decoded.textures);
-  fingerprints.insert(fingerprints.end(), decoded.fingerprints.begin(), decoded.fingerprints.end());
+  append(decoded.fingerprints, fingerprints);
   for (auto& material : scene.materials) {
     for_each_texture(material, [&](TextureUse& use) {
       if (use) use.texture = places.at(use.texture);
@@ -110,22 +115,71 @@ std::string combined_fingerprint(const std::vector<std::string>& parts) {
 
 }  // namespace
 
-SceneDescription import_scene(const std::string& path, const ImportOptions& options) {
-  const Document document(path, options.allow_outside_files);
+/// The file as far as it depends on neither time nor variant.
+class SceneFile::Content {
+ public:
+  Content(const std::string& path, bool allow_outside_files)
+      : path_(path),
+        document_(path, allow_outside_files),
+        features_(report_features(document_.model())),
+        materials_(read_materials(document_, material_notices_)) {}
+
+  const Document& document() const { return document_; }
+
+  /// `keep`: whether more descriptions may follow, for which meshes are kept.
+  SceneDescription describe(const ImportOptions& options, bool keep);
+
+ private:
+  void add_shapes(const ImportOptions& options, bool keep, SceneDescription& scene);
+  void add_environment(SceneDescription& scene, std::vector<std::string>& fingerprints);
+
+  struct ImageLight {
+    std::shared_ptr<const EnvironmentDescription> environment;
+    std::vector<Notice> notices;
+    std::vector<std::string> fingerprints;
+  };
+
+  std::string path_;
+  Document document_;
+  std::vector<FeatureUse> features_;
+  std::vector<Notice> material_notices_;
+  ImportedMaterials materials_;
+  ImageCache images_;
+  MeshCache meshes_;
+  std::optional<ImageLight> image_light_;  ///< none: not read yet
+};
+
+SceneDescription SceneFile::Content::describe(const ImportOptions& options, bool keep) {
   SceneDescription scene;
-  scene.source = path;
-  scene.features = report_features(document.model());
-  scene.notices = document.notices();
-  for (auto& notice : feature_notices(scene.features)) scene.notices.push_back(std::move(notice));
+  scene.source = path_;
+  scene.features = features_;
+  scene.notices = document_.notices();
+  append(feature_notices(features_), scene.notices);
+  add_shapes(options, keep, scene);
 
-  std::vector<NodePose> poses = rest_pose(document, scene.notices);
+  std::vector<std::string> fingerprints = document_.fingerprints();
+  keep_used_materials(materials_.materials, scene);
+  add_textures(document_, materials_.derived, images_, scene, fingerprints);
+  add_environment(scene, fingerprints);
+  scene.hash = combined_fingerprint(fingerprints);
+  if (!options.variant.empty()) scene.choices.emplace_back("variant", options.variant);
+  if (!options.animation.empty()) scene.choices.emplace_back("animation", options.animation);
+  if (options.time) scene.choices.emplace_back("at", fmt::format("{}", *options.time));
+
+  note_bent_light(scene);
+  if (options.strict) check_strictly(document_, scene);
+  return scene;
+}
+
+void SceneFile::Content::add_shapes(const ImportOptions& options, bool keep, SceneDescription& scene) {
+  std::vector<NodePose> poses = rest_pose(document_, scene.notices);
   if (options.time || !options.animation.empty())
-    pose_by_animations(document, options.animation, options.time.value_or(0), poses, scene.notices);
-  const NodePlaces places = place_nodes(document, poses);
-  add_cameras_and_lights(document, places, scene);
+    pose_by_animations(document_, options.animation, options.time.value_or(0), poses, scene.notices);
+  const NodePlaces places = place_nodes(document_, poses);
+  add_cameras_and_lights(document_, places, scene);
 
-  ImportedMaterials imported = read_materials(document, scene.notices);
-  InstancePlacer placer(document, imported.materials, options.variant);
+  append(material_notices_, scene.notices);
+  InstancePlacer placer(document_, materials_.materials, options.variant);
   for (const int node : places.shown) placer.add_node(node, places, poses[size_t(node)]);
   Placement placement = placer.take();
   scene.instances = std::move(placement.instances);
@@ -135,22 +189,35 @@ SceneDescription import_scene(const std::string& path, const ImportOptions& opti
          fmt::format("{} primitives have no surface (points, lines or no positions) and are left out",
                      placement.without_surface)});
   MeshRepairs repairs;
-  scene.meshes = read_meshes(document, placement.meshes, places.to_world, repairs);
-  for (auto& notice : repairs.notices()) scene.notices.push_back(std::move(notice));
-  check_extents(document, scene);
+  scene.meshes =
+      read_meshes(document_, placement.meshes, places.to_world, repairs, keep ? &meshes_ : nullptr);
+  append(repairs.notices(), scene.notices);
+  check_extents(document_, scene);
+}
 
-  std::vector<std::string> fingerprints = document.fingerprints();
-  keep_used_materials(std::move(imported.materials), scene);
-  add_textures(document, imported.derived, scene, fingerprints);
-  scene.environment = read_image_light(document, scene.notices, fingerprints);
-  scene.hash = combined_fingerprint(fingerprints);
-  if (!options.variant.empty()) scene.choices.emplace_back("variant", options.variant);
-  if (!options.animation.empty()) scene.choices.emplace_back("animation", options.animation);
-  if (options.time) scene.choices.emplace_back("at", fmt::format("{}", *options.time));
+void SceneFile::Content::add_environment(SceneDescription& scene, std::vector<std::string>& fingerprints) {
+  if (!image_light_) {
+    ImageLight light;
+    light.environment = read_image_light(document_, light.notices, light.fingerprints);
+    image_light_ = std::move(light);
+  }
+  scene.environment = image_light_->environment;
+  append(image_light_->notices, scene.notices);
+  append(image_light_->fingerprints, fingerprints);
+}
 
-  note_bent_light(scene);
-  if (options.strict) check_strictly(document, scene);
-  return scene;
+SceneFile::SceneFile(const std::string& path, bool allow_outside_files)
+    : content_(std::make_unique<Content>(path, allow_outside_files)) {}
+SceneFile::~SceneFile() = default;
+
+SceneDescription SceneFile::describe(const ImportOptions& options) {
+  return content_->describe(options, true);
+}
+
+std::vector<std::string> SceneFile::variants() const { return variant_names(content_->document()); }
+
+SceneDescription import_scene(const std::string& path, const ImportOptions& options) {
+  return SceneFile::Content(path, options.allow_outside_files).describe(options, false);
 }
 
 void refuse_warnings(const std::string& path, std::span<const Notice> notices) {

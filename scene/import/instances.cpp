@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/base/names.h"
 #include "scene/import/accessors.h"
 #include "scene/import/primitive_data.h"
@@ -15,16 +17,10 @@ using Imath::M44d;
 /// Index of a variant by name; -1 when none is asked for.
 int find_variant(const Document& document, const std::string& wanted) {
   if (wanted.empty()) return -1;
-  std::vector<std::string> names;
-  const auto extension = document.model().extensions.find("KHR_materials_variants");
-  if (extension != document.model().extensions.end()) {
-    const auto& variants = extension->second.Get("variants");
-    for (int i = 0; i < int(variants.ArrayLen()); ++i) {
-      names.push_back(variants.Get(i).Get("name").Get<std::string>());
-      if (names.back() == wanted) return i;
-    }
-  }
-  throw_unknown_name("variant", wanted, names);
+  const std::vector<std::string> names = variant_names(document);
+  const auto found = std::find(names.begin(), names.end(), wanted);
+  if (found == names.end()) throw_unknown_name("variant", wanted, names);
+  return int(found - names.begin());
 }
 
 /// Matrices of EXT_mesh_gpu_instancing, to the node's own space: one a value of its attributes, of which
@@ -65,6 +61,16 @@ std::optional<TextureUse> tangent_map(const MaterialDescription& m) {
 }
 
 }  // namespace
+
+std::vector<std::string> variant_names(const Document& document) {
+  std::vector<std::string> names;
+  const auto extension = document.model().extensions.find("KHR_materials_variants");
+  if (extension == document.model().extensions.end()) return names;
+  const auto& variants = extension->second.Get("variants");
+  for (int i = 0; i < int(variants.ArrayLen()); ++i)
+    names.push_back(variants.Get(i).Get("name").Get<std::string>());
+  return names;
+}
 
 InstancePlacer::InstancePlacer(const Document& document, const std::vector<ImportedMaterial>& materials,
                                const std::string& variant)

@@ -13,6 +13,9 @@
 
 namespace vernier {
 
+/// Names of the file's variants (KHR_materials_variants), in its order.
+std::vector<std::string> variant_names(const Document& document);
+
 /// What of the scene has a surface. Instances refer to `meshes` and, by the file's own numbering, to
 /// materials.
 struct Placement {

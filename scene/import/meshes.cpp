@@ -135,6 +135,13 @@ MeshDescription read_mesh(const Document& document, const MeshRequest& request,
   return mesh;
 }
 
+/// Whether tangents that follow one texture follow the other as well.
+bool same_axes(const std::optional<TextureUse>& a, const std::optional<TextureUse>& b) {
+  if (!a || !b) return !a && !b;
+  return a->texcoord == b->texcoord && a->offset == b->offset && a->scale == b->scale &&
+         a->rotation == b->rotation;
+}
+
 }  // namespace
 
 void MeshRepairs::add(const MeshRepairs& other) {
@@ -159,15 +166,39 @@ std::vector<Notice> MeshRepairs::notices() const {
   return list;
 }
 
+std::shared_ptr<MeshCache::Entry> MeshCache::find(const MeshRequest& request) const {
+  const auto found = entries_.find(request.use);
+  if (found == entries_.end()) return nullptr;
+  const MeshRequest& known = found->second->request;
+  const bool same = known.texcoords == request.texcoords && same_axes(known.tangent_map, request.tangent_map);
+  return same ? found->second : nullptr;
+}
+
+void MeshCache::replace(const std::vector<std::shared_ptr<Entry>>& entries) {
+  entries_.clear();
+  for (const auto& entry : entries)
+    if (entry->request.use.skin < 0) entries_.emplace(entry->request.use, entry);
+}
+
 std::vector<MeshDescription> read_meshes(const Document& document, const std::vector<MeshRequest>& requests,
-                                         const std::vector<Imath::M44d>& node_to_world,
-                                         MeshRepairs& repairs) {
+                                         const std::vector<Imath::M44d>& node_to_world, MeshRepairs& repairs,
+                                         MeshCache* cache) {
+  std::vector<std::shared_ptr<MeshCache::Entry>> entries(requests.size());
   std::vector<MeshDescription> meshes(requests.size());
-  std::vector<MeshRepairs> repairs_of(requests.size());
   for_each_in_parallel(requests.size(), [&](size_t i) {
-    meshes[i] = read_mesh(document, requests[i], node_to_world, repairs_of[i]);
+    if (cache) entries[i] = cache->find(requests[i]);
+    if (!entries[i]) {
+      entries[i] = std::make_shared<MeshCache::Entry>();
+      entries[i]->request = requests[i];
+      entries[i]->mesh = read_mesh(document, requests[i], node_to_world, entries[i]->repairs);
+    }
+    if (cache)
+      meshes[i] = entries[i]->mesh;
+    else
+      meshes[i] = std::move(entries[i]->mesh);
   });
-  for (const auto& r : repairs_of) repairs.add(r);
+  for (const auto& entry : entries) repairs.add(entry->repairs);
+  if (cache) cache->replace(entries);
   return meshes;
 }
 

@@ -5,6 +5,8 @@
 
 #include <array>
 #include <compare>
+#include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -38,9 +40,28 @@ struct MeshRepairs {
   std::vector<Notice> notices() const;
 };
 
-/// Reads the meshes asked for, in parallel; `node_to_world` places the joints of skins. Throws Error(input)
-/// about the first mesh that cannot be used.
+/// Meshes as the last reading left them, for one in which they have the same shape.
+class MeshCache {
+ public:
+  struct Entry {
+    MeshRequest request;
+    MeshDescription mesh;
+    MeshRepairs repairs;
+  };
+  /// Null when the mesh was not asked for in the same way, or is moved by joints.
+  std::shared_ptr<Entry> find(const MeshRequest& request) const;
+  /// Takes the place of all there is.
+  void replace(const std::vector<std::shared_ptr<Entry>>& entries);
+
+ private:
+  std::map<MeshUse, std::shared_ptr<Entry>> entries_;
+};
+
+/// Reads the meshes asked for, in parallel; `node_to_world` places the joints of skins. With a cache, copies
+/// what it has and leaves what it may need next time. Throws Error(input) about the first mesh that cannot be
+/// used.
 std::vector<MeshDescription> read_meshes(const Document& document, const std::vector<MeshRequest>& requests,
-                                         const std::vector<Imath::M44d>& node_to_world, MeshRepairs& repairs);
+                                         const std::vector<Imath::M44d>& node_to_world, MeshRepairs& repairs,
+                                         MeshCache* cache);
 
 }  // namespace vernier

@@ -55,9 +55,11 @@ void decode_missing(const Document& document, const std::vector<int>& indices,
                        [&](size_t i) { *jobs[i].second = decode_image(document, jobs[i].first); });
 }
 
-/// Decodes each texture's best image, and the next best where that fails.
-std::map<int, DecodedImage> decode_images(const Document& document, const std::vector<int>& textures) {
-  std::map<int, DecodedImage> images;
+/// Decodes each texture's best image, and the next best where that fails, unless `images` has it. Returns the
+/// indices of those that were looked at.
+std::set<int> decode_images(const Document& document, const std::vector<int>& textures,
+                            std::map<int, DecodedImage>& images) {
+  std::set<int> looked_at;
   std::vector<std::vector<Candidate>> candidates;
   candidates.reserve(textures.size());
   for (const int texture : textures)
@@ -68,8 +70,9 @@ std::map<int, DecodedImage> decode_images(const Document& document, const std::v
       if (rank < list.size() && (rank == 0 || !problem_of(list[rank - 1], images).empty()))
         wanted.push_back(list[rank].image);
     decode_missing(document, wanted, images);
+    looked_at.insert(wanted.begin(), wanted.end());
   }
-  return images;
+  return looked_at;
 }
 
 WrapMode wrap_mode(int gltf) {
@@ -221,7 +224,7 @@ void report(const Document& document, int texture, const Choice& choice, std::ve
 }  // namespace
 
 DecodedTextures read_textures(const Document& document, const std::vector<WantedTexture>& wanted,
-                              const std::vector<RoughnessFromGlossiness>& derived,
+                              const std::vector<RoughnessFromGlossiness>& derived, ImageCache& cache,
                               std::vector<Notice>& notices) {
   const auto& textures = document.model().textures;
   const int from_file = int(textures.size());
@@ -231,25 +234,29 @@ DecodedTextures read_textures(const Document& document, const std::vector<Wanted
   std::vector<int> sources;
   sources.reserve(wanted.size());
   for (const WantedTexture& texture : wanted) sources.push_back(source_of(texture.index));
-  const std::map<int, DecodedImage> images = decode_images(document, sources);
+  const std::set<int> looked_at = decode_images(document, sources, cache.images);
 
   DecodedTextures result;
   std::set<int> reported;
   for (const WantedTexture& texture : wanted) {
     const int source = source_of(texture.index);
-    const Choice choice = choose(images, candidates_of(textures[size_t(source)]));
+    const Choice choice = choose(cache.images, candidates_of(textures[size_t(source)]));
     if (reported.insert(source).second) report(document, source, choice, notices);
     result.unreadable.push_back(!choice.image);
     std::shared_ptr<const Image8> pixels = choice.image ? choice.image->pixels : magenta_texel();
-    if (choice.image && texture.index >= from_file)
-      pixels = roughness_of(*pixels, derived[size_t(texture.index - from_file)].factor);
-    else if (choice.image)
+    if (choice.image && texture.index >= from_file) {
+      std::shared_ptr<const Image8>& roughness = cache.roughness[texture.index];
+      if (!roughness) roughness = roughness_of(*pixels, derived[size_t(texture.index - from_file)].factor);
+      pixels = roughness;
+    } else if (choice.image) {
       if (const std::string problem = transfer_problem(texture, *choice.image); !problem.empty())
         notices.push_back({Notice::Severity::warning, fmt::format("/textures/{}", source),
                            fmt::format("texture '{}' {}", textures[size_t(source)].name, problem)});
+    }
     result.textures.push_back(make_texture(document, textures[size_t(source)], std::move(pixels)));
   }
-  for (const auto& [index, image] : images) {
+  for (const int index : looked_at) {
+    const DecodedImage& image = cache.images.at(index);
     if (!image.fingerprint.empty()) result.fingerprints.push_back(image.fingerprint);
     for (const auto& remark : image.remarks)
       notices.push_back({Notice::Severity::warning, fmt::format("/images/{}", index), remark});

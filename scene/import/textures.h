@@ -38,13 +38,20 @@ struct DecodedTextures {
   std::vector<std::string> fingerprints;  ///< of the image files read, in the file's order
 };
 
+/// Pictures of a file that have been decoded, for descriptions of it to come.
+struct ImageCache {
+  std::map<int, DecodedImage> images;                      ///< by the file's index
+  std::map<int, std::shared_ptr<const Image8>> roughness;  ///< by that of `derived`
+};
+
 /// Reads and decodes the textures asked for, in parallel; textures of one image share its pixels. They are
 /// indices of the file or, beyond those, of `derived`. Images that extensions name come first; where one is
 /// missing or cannot be decoded the texture's own stands for it, and a magenta texel for that, each with a
 /// notice. Throws Error(input) on a reference that is not to be followed, and where the file requires the
-/// extension of an image that nothing stands for.
+/// extension of an image that nothing stands for. What `cache` holds is not decoded again, and the rest is
+/// added to it.
 DecodedTextures read_textures(const Document& document, const std::vector<WantedTexture>& wanted,
-                              const std::vector<RoughnessFromGlossiness>& derived,
+                              const std::vector<RoughnessFromGlossiness>& derived, ImageCache& cache,
                               std::vector<Notice>& notices);
 
 }  // namespace vernier

@@ -82,7 +82,11 @@ std::shared_ptr<const Image> paint(int width, int height, float (*radiance)(cons
 const std::vector<BuiltInEnvironment>& built_in_environments() {
   static const std::vector<BuiltInEnvironment> table{
       {"studio", "softboxes over a neutral ground, turned with the camera", true,
-       [] { return paint(1024, 512, studio_radiance); }},
+       [] {
+         // Every picture of a turntable asks for it again.
+         static const std::shared_ptr<const Image> picture = paint(1024, 512, studio_radiance);
+         return picture;
+       }},
       {"sky", "a soft sky, bright overhead", false, [] { return paint(2, 64, sky_radiance); }}};
   return table;
 }

@@ -46,8 +46,8 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{{"--sppp", "4"}, 2, "unknown flag '--sppp'; did you mean '--spp'? See vernier render --help"},
         Misuse{{"--integrater=path"}, 2, "did you mean '--integrator'?"},
         Misuse{{"-x"}, 2, "unknown flag '-x'; see vernier render --help"},
-        Misuse{{"another.glb"}, 2, "'another.glb' is one argument too many"}, Misuse{{"--spp"}, 2, "--spp"},
-        Misuse{{"--spp", "0"}, 2, "--spp: '0' is not a whole number from 1"},
+        Misuse{{"another.glb"}, 2, "2 scenes would be written over each other; put {name} into the name"},
+        Misuse{{"--spp"}, 2, "--spp"}, Misuse{{"--spp", "0"}, 2, "--spp: '0' is not a whole number from 1"},
         Misuse{{"--spp", "many"}, 2, "--spp: 'many' is not a whole number"},
         Misuse{{"--seed", "-1"}, 2, "--seed: '-1'"}, Misuse{{"--threads", "-2"}, 2, "--threads: '-2'"},
         Misuse{{"--max-depth", "0"}, 2, "--max-depth: '0'"},
@@ -102,10 +102,12 @@ TEST(CommandLine, HelpNamesEveryFlagOfRender) {
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_EQ(help.err, "");
   for (const char* flag :
-       {"--integrator", "--show",       "--spp",         "--time",     "--size",     "--crop",  "--camera",
-        "--env",        "--env-rotate", "--env-scale",   "--exposure", "--view",     "--ocio",  "--max-depth",
-        "--seed",       "--threads",    "--accelerator", "--stats",    "--progress", "--quiet", "--verbose",
-        "--strict",     "--output",     "--variant",     "--at"})
+       {"--integrator", "--show",        "--spp",        "--time",      "--size",          "--crop",
+        "--camera",     "--env",         "--env-rotate", "--env-scale", "--exposure",      "--view",
+        "--ocio",       "--max-depth",   "--seed",       "--threads",   "--accelerator",   "--stats",
+        "--progress",   "--quiet",       "--verbose",    "--strict",    "--output",        "--variant",
+        "--at",         "--frames",      "--fps",        "--turntable", "--skip-existing", "--keep-going",
+        "--draft",      "--write-every", "--format"})
     EXPECT_THAT(help.out, HasSubstr(flag));
 }
 

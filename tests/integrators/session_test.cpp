@@ -129,6 +129,37 @@ TEST(RenderSession, TakesOneCallAtATime) {
   EXPECT_GT(session.status().samples, 0u);
 }
 
+TEST(RenderSession, PreviewsOnTheWayChangeNothing) {
+  RenderSettings settings = settings_of_room();
+  RenderSession plain(room(), settings), watched(room(), settings);
+  plain.run();
+  size_t previews = 0;
+  watched.on_preview(
+      [&] {
+        ++previews;
+        EXPECT_LT(watched.status().samples, plain.status().samples + 1);
+        EXPECT_FALSE(watched.picture().image.empty());
+      },
+      0);
+  watched.run();
+  EXPECT_GT(previews, 0u);
+  EXPECT_EQ(watched.picture().image.values, plain.picture().image.values);
+}
+
+TEST(RenderSession, AskedForNowPreviewAndCheckpointComeOnce) {
+  RenderSettings settings = settings_of_room();
+  RenderSession session(room(), settings);
+  std::atomic<bool> now = true;
+  size_t previews = 0, checkpoints = 0;
+  const double never = std::numeric_limits<double>::infinity();
+  session.on_preview([&] { ++previews; }, never, &now);
+  session.on_checkpoint([&] { ++checkpoints; }, never);
+  session.run();
+  EXPECT_FALSE(now);
+  EXPECT_EQ(previews, 1u);
+  EXPECT_EQ(checkpoints, 2u) << "and at the end";
+}
+
 TEST(RenderSession, RefusesWhatCannotBeRendered) {
   const auto with = [](const std::function<void(RenderSettings&)>& change) {
     RenderSettings settings = settings_of_room();

@@ -96,9 +96,10 @@ TEST(ImportAnimations, AllOfAFileWithOneOrNone) {
 TEST(ImportAnimations, SayWhenTheTimeLiesOutside) {
   Stage stage;
   stage.animate(0, 3, "move", {0.5f, 0.7f});
-  EXPECT_TRUE(has_notice(stage.at(0),
-                         "0 s lies outside of animation 'move' (0.5 to 0.7 s), whose nearest key holds"));
-  EXPECT_TRUE(has_notice(stage.at(9), "9 s lies outside"));
+  EXPECT_TRUE(has_notice(
+      stage.at(0),
+      "the time asked for lies outside of animation 'move' (0.5 to 0.7 s), whose nearest key holds"));
+  EXPECT_TRUE(has_notice(stage.at(9), "lies outside"));
   EXPECT_EQ(x_of(stage.at(9), 0), 3.f);
   for (const double inside : {0.5, 0.6, 0.7}) EXPECT_TRUE(stage.at(inside).notices.empty()) << inside;
   for (int i = 0; i < 5; ++i) {

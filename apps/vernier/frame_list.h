@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vernier::apps {
+
+/// Numbers of frames, ascending and each once, from "7", "1-48", "1-48x2" (every second one) or a list of
+/// such: "1,5,10-20". Throws Error(usage) that says what was probably meant.
+std::vector<int> parse_frames(std::string_view text);
+
+/// Seconds into an animation at which a frame lies: frame 0 at its beginning, as Blender's glTF exporter
+/// writes them.
+inline double frame_time(int frame, double frames_per_second) { return frame / frames_per_second; }
+
+}  // namespace vernier::apps

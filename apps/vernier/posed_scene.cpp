@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/vernier/posed_scene.h"
+
+#include <algorithm>
+#include <numbers>
+#include <utility>
+
+#include "apps/vernier/scene_summary.h"
+#include "apps/vernier/stopwatch.h"
+#include "scene/subject.h"
+#include "scene/turntable.h"
+
+namespace vernier::apps {
+namespace {
+
+/// Puts the views of a turntable, all from one camera, at the end of `views`.
+void add_sides(const View& view, const Vec3f& center, const RunPlan& plan, std::vector<View>& views) {
+  for (const auto side : plan.sides) {
+    views.push_back(view);
+    views.back().side = side;
+    const double turn = side ? double(*side - 1) / plan.sides_around : 0;
+    if (side) views.back().camera = carried_around(view.camera, center, 2 * std::numbers::pi * turn);
+  }
+}
+
+}  // namespace
+
+PosedScene::PosedScene(const RenderFlags& flags, const RunPlan& plan, SceneDescription description,
+                       NoticeLog& log)
+    : own_(description.environment) {
+  report_.scene_file = flags.scene;
+  report_.scene_hash = description.hash;
+  report_.counts = count(description);
+  const auto& cameras = description.cameras;
+  if (plan.all_cameras && !cameras.empty())
+    chosen_ = all_cameras(cameras, log);
+  else
+    chosen_ = {{choose_camera(cameras, flags.camera, log), ""}};
+  Stopwatch watch;
+  scene_ = build_scene(std::move(description), {flags.accelerator});
+  report_.build_seconds = watch.lap();
+  report_.accelerator = scene_->accelerator_name();
+  report_.accelerator_stats = scene_->accelerator().stats();
+}
+
+std::vector<View> PosedScene::views(const RenderFlags& flags, const RunPlan& plan, NoticeLog& log) const {
+  const float aspect = asked_aspect(flags.size);
+  const Vec3f center = Subject(scene_->geometry()).bounds_to_see().center();
+  std::vector<View> views;
+  for (const auto& [camera, label] : chosen_) {
+    View view;
+    view.camera = place_camera(camera, flags.camera, scene_->geometry(), aspect, log);
+    view.front = view.camera;
+    view.label = label.empty() ? view.camera.name : label;
+    view.is_of_scene = camera.has_value();
+    add_sides(view, center, plan, views);
+  }
+  return views;
+}
+
+Surroundings PosedScene::surround(const RenderRequest& request, const RenderSettings& settings,
+                                  const View& view, NoticeLog& log) {
+  const std::optional<Surroundings>& asked = request.surroundings;
+  if (surroundings_ && asked && !asked->turns_with_camera) return *surroundings_;
+  const bool is_decided = !asked && view.side && decided_by_ == view.front.to_world;
+  if (!is_decided) {
+    if (surroundings_ && surroundings_->environment) scene_->surround(own_);
+    surroundings_ = apps::surround(*scene_, asked, asked ? view.camera : view.front, settings, log);
+    decided_by_ = view.front.to_world;
+  }
+  if (!asked && view.side && surroundings_->environment)
+    scene_->surround(built_in_environment(surroundings_->name, view.camera));
+  return *surroundings_;
+}
+
+void SceneLoader::open(const std::string& scene) {
+  if (file_) return;
+  Stopwatch watch;
+  file_.emplace(scene, request_.flags.import.allow_outside_files);
+  load_seconds_ = watch.lap();
+}
+
+std::unique_ptr<PosedScene> SceneLoader::pose(const RenderFlags& flags, const RunPlan& plan, NoticeLog& log) {
+  Stopwatch watch;
+  SceneDescription description =
+      file_ ? file_->describe(flags.import) : import_scene(flags.scene, flags.import);
+  replace_surroundings(description, request_.surroundings, log);
+  log.add(description.notices);
+  const double seconds = std::exchange(load_seconds_, 0) + watch.lap();
+  auto posed = std::make_unique<PosedScene>(flags, plan, std::move(description), log);
+  posed->add_load_seconds(seconds);
+  return posed;
+}
+
+}  // namespace vernier::apps

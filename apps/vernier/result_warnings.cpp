@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/vernier/result_warnings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "apps/vernier/missing_text.h"
+#include "integrators/render/visible_light.h"
+#include "scene/camera.h"
+
+namespace vernier::apps {
+namespace {
+
+void warn_of_bad_samples(const RenderResult& result, const RenderFlags& flags, NoticeLog& log) {
+  if (result.bad_samples == 0) return;
+  std::string replay;
+  if (!result.bad_sample_examples.empty()) {
+    const BadSample& first = result.bad_sample_examples.front();
+    replay = fmt::format(
+        "; pixel {},{} has one, and the same command with --crop 1x1+{}+{} --spp {} --adaptive off --seed {} "
+        "replays it",
+        first.x, first.y, first.x, first.y, 2 * (first.index + 1), flags.seed);
+  }
+  log.add({Notice::Severity::warning,
+           {},
+           fmt::format("{} of {} samples were not finite or were negative, and were left out{}",
+                       result.bad_samples, result.samples, replay)});
+}
+
+/// Says so when what the camera sees of the scene comes out all but black, and what helps.
+void warn_if_black(double mean, const RenderFlags& flags, const RenderReport& report, NoticeLog& log) {
+  constexpr double black = 0.005, grey = 0.18;
+  if (mean * std::exp2(flags.display.exposure) >= black) return;
+  std::vector<std::string> remedies;
+  if (report.surroundings.name != "studio") remedies.emplace_back("--env studio lights it");
+  if (mean > 0)
+    remedies.push_back(
+        fmt::format("--exposure {:.0f} brightens a .png or .jpg", std::ceil(std::log2(grey / mean))));
+  log.add({Notice::Severity::warning,
+           {},
+           fmt::format("the picture is almost all black, its mean luminance {:.2g}{}{}", mean,
+                       remedies.empty() ? "" : "; ", fmt::join(remedies, ", "))});
+}
+
+}  // namespace
+
+void warn_of_result(const RenderResult& result, const Scene& scene, const RenderFlags& flags,
+                    const RenderReport& report, NoticeLog& log) {
+  warn_of_bad_samples(result, flags, log);
+  warn_of_missing_light(result, flags.integrator_options.max_depth, log);
+  if (!shows_light(flags)) return;
+  const RenderSettings& settings = report.settings;
+  const Camera camera(settings.camera, settings.width, settings.height);
+  warn_if_black(covered_luminance(result.film, scene, camera, settings), flags, report, log);
+}
+
+}  // namespace vernier::apps

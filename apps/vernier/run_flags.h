@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/vernier/commands.h"
+
+namespace vernier::apps {
+
+/// Which pictures a run of `vernier render` makes, and how it goes about it, as typed.
+struct RunFlags {
+  std::vector<std::string> scenes;
+  std::string frames;         ///< empty: none
+  std::optional<double> fps;  ///< none: 24
+  std::optional<int> turntable;
+  bool skip_existing = false, keep_going = false, draft = false;
+  std::string write_every;  ///< a time, or "never"; empty: every two seconds on a terminal
+  std::string format;       ///< of the picture on standard output; empty: png
+};
+
+/// Declares the flags on `command`, but for the scenes.
+void add_run_flags(CLI::App& command, RunFlags& flags);
+
+/// Declares what is done soon: --draft, --write-every, --format.
+void add_preview_flags(CLI::App& command, RunFlags& flags);
+
+/// Throws Error(usage) on flags that mean nothing beside each other; `time_is_given`: by --at.
+void check_run_flags(const RunFlags& flags, bool time_is_given);
+
+/// Seconds between pictures of a render that is not done yet; none: there are none. `on_terminal`: somebody
+/// is watching.
+std::optional<double> preview_interval(const RunFlags& flags, bool on_terminal);
+
+}  // namespace vernier::apps

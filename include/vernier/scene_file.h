@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vernier/scene.h"
+
+namespace vernier {
+
+/// A .gltf or .glb file in memory, to be described at several times and in several variants. What depends on
+/// neither, such as textures, materials and meshes that do not change their shape, is read once, and shared
+/// or copied from then on. For one thread at a time.
+class VERNIER_API SceneFile {
+ public:
+  /// Throws Error(input) as import_scene() does; `allow_outside_files` as in ImportOptions.
+  explicit SceneFile(const std::string& path, bool allow_outside_files = false);
+  ~SceneFile();
+  SceneFile(const SceneFile&) = delete;
+  SceneFile& operator=(const SceneFile&) = delete;
+
+  /// The same description as import_scene() gives with these options, of which allow_outside_files counts no
+  /// more.
+  SceneDescription describe(const ImportOptions& options = {});
+
+  /// Names of the file's variants (KHR_materials_variants), in its order.
+  std::vector<std::string> variants() const;
+
+ private:
+  friend SceneDescription import_scene(const std::string& path, const ImportOptions& options);
+
+  class Content;
+  std::unique_ptr<Content> content_;
+};
+
+}  // namespace vernier
