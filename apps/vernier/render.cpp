@@ -26,6 +26,7 @@
 #include "integrators/render/visible_light.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
+#include "vernier/ground.h"
 
 namespace vernier::apps {
 namespace {
@@ -101,6 +102,7 @@ SceneDescription load_scene(const RenderRequest& request, RenderReport& report, 
   report.scene_file = flags.scene;
   report.scene_hash = description.hash;
   report.counts = count(description);
+  if (flags.background.ground == "matte") add_ground(description);
   return description;
 }
 

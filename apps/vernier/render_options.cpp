@@ -92,7 +92,8 @@ DisplayOptions choose_display(const RenderFlags& flags) {
 void require_separate_outputs(const RenderFlags& flags) {
   std::vector<std::string> written = flags.outputs;
   written.insert(written.end(), {flags.stats, flags.report, flags.checkpoint});
-  std::vector<std::string> read{flags.scene, flags.surroundings.environment, flags.display.config};
+  std::vector<std::string> read{flags.scene, flags.surroundings.environment, flags.display.config,
+                                flags.background.file()};
   if (flags.resume != flags.checkpoint) read.push_back(flags.resume);
   require_separate_files(read, written);
 }
@@ -103,6 +104,8 @@ MemoryUse memory_use(const RenderRequest& request) {
   const RenderFlags& flags = request.flags;
   MemoryUse use;
   use.adaptive = request.settings.adaptive;
+  use.alpha = request.settings.background.kind == Background::Kind::transparent;
+  use.background_picture = request.settings.background.kind == Background::Kind::picture;
   for (const Layer& layer : request.layers) {
     use.layer_channels += layer.channel_count();
     use.error_layers = use.error_layers || layer.need == LayerNeed::error;
@@ -138,6 +141,7 @@ RenderRequest check_render_flags(const RenderFlags& flags) {
   request.flags = flags;
   if (!flags.accelerator.empty()) find_by_name(accelerators(), "accelerator", flags.accelerator);
   request.settings = make_settings(flags);
+  request.settings.background = choose_background(flags.background, flags.outputs);
   request.progress = parse_progress(flags);
   request.layer_list = choose_layers(flags);
   request.layers = find_layers(request.layer_list);

@@ -13,6 +13,7 @@
 #include <random>
 
 #include "core/base/fingerprint.h"
+#include "integrators/render/backdrop.h"
 #include "integrators/render/checkpoint.h"
 #include "scene/camera.h"
 #include "tests/support/temporary_folder.h"
@@ -79,9 +80,9 @@ class CheckpointMutation : public testing::Test {
     const std::string path = folder_.write("mutant.ckpt", bytes);
     try {
       Checkpoint checkpoint = read_checkpoint(path);
-      if (!go_on || !checkpoint.state->fits(options_.width, options_.height, true)) return {};
+      if (!go_on || !checkpoint.state->fits(options_.width, options_.height, true, false)) return {};
       options_.limits.spp = 49;  // through the end of the pass and a planning
-      render({scene_, *camera_, *integrator_, options_}, *checkpoint.state, stop_);
+      render({scene_, *camera_, *integrator_, options_, Backdrop(options_)}, *checkpoint.state, stop_);
       return {};
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::input);
