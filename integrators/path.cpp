@@ -14,21 +14,13 @@ class PathIntegrator : public Integrator {
   explicit PathIntegrator(const IntegratorOptions& options) : options_(options) {}
 
   Estimate estimate(const Scene& scene, const Ray& camera_ray, Sampler& sampler) const override {
-    return options_.background_apart ? trace<true>(scene, camera_ray, sampler)
-                                     : trace<false>(scene, camera_ray, sampler);
-  }
-
- private:
-  /// One path. What only a background apart needs costs nothing where there is none.
-  template <bool background_apart>
-  Estimate trace(const Scene& scene, const Ray& camera_ray, Sampler& sampler) const {
     Estimate out;
     Segment segment = camera_segment(scene, camera_ray);
     Rgb throughput = camera_response(scene, segment);
     float eta_scale = 1;    // product of eta^2: undoes the compression of radiance inside dense media
     float audit_scale = 1;  // of the few paths that go on beyond the depth limit
     Scattering last;        // how the ray came to be
-    bool looks_through = background_apart;  // the camera sees along it, through clear surfaces
+    bool looks_through = options_.background_apart;  // the camera sees along it, through clear surfaces
     auto hit = intersect_from_camera(scene, segment);
     ++out.rays.camera;
     out.met_surface = hit.has_value();
@@ -78,6 +70,7 @@ class PathIntegrator : public Integrator {
     return out;
   }
 
+ private:
   /// Of the paths that reach the depth limit, those that go on to tell how much light it takes.
   static constexpr float audited_share = 1 / 32.f;
 
