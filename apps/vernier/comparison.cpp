@@ -74,7 +74,7 @@ std::optional<Image> alpha_of(const LayeredImage& picture) {
 /// One channel, 0 where neither picture shows a surface; none when neither tells.
 std::optional<Image> shown_pixels(const LayeredImage& x, const LayeredImage& r) {
   auto shown = coverage_of(x);
-  const auto other = coverage_of(r);
+  auto other = coverage_of(r);
   if (!shown) return other;
   if (other && other->values.size() == shown->values.size())
     for (size_t i = 0; i < shown->values.size(); ++i)
