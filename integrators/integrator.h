@@ -35,6 +35,10 @@ struct Estimate {
   Rgb radiance{0, 0, 0};
   MissingLight missing;
   RayCounts rays;
+  /// Part of the light from behind all surfaces that reaches the camera straight or through clear ones, which
+  /// `radiance` then leaves out; only with IntegratorOptions::background_apart.
+  Rgb background{0, 0, 0};
+  bool met_surface = false;  ///< by the camera ray
 };
 
 /// A way to estimate the light along a camera ray. Immutable while rendering; called from many threads.

@@ -20,11 +20,17 @@ class PathIntegrator : public Integrator {
     float eta_scale = 1;    // product of eta^2: undoes the compression of radiance inside dense media
     float audit_scale = 1;  // of the few paths that go on beyond the depth limit
     Scattering last;        // how the ray came to be
+    bool looks_through = options_.background_apart;  // the camera sees along it, through clear surfaces
     auto hit = intersect_from_camera(scene, segment);
     ++out.rays.camera;
+    out.met_surface = hit.has_value();
 
     for (int depth = 1;; ++depth) {
       throughput *= transmittance(scene.volumes().medium(segment.media), hit ? hit->t : segment.ray.t_max);
+      if (!hit && looks_through) {
+        if (depth <= options_.max_depth) out.background = throughput;
+        break;
+      }
       add(out, depth, throughput * met_emission(scene, last, segment.ray, hit));
       if (!hit) break;
 
@@ -43,8 +49,10 @@ class PathIntegrator : public Integrator {
         throughput *= audit_scale;
       }
       const Shading surface = shade(scene, *hit, -segment.ray.direction, throughput);
+      looks_through = looks_through && is_clear(surface);
       if (options_.light_sampling != LightSampling::bsdf)
-        if (const auto light = scene.sample_light(*hit, light_choice, light_point))
+        if (const auto light = scene.sample_light(*hit, light_choice, light_point);
+            light && !(looks_through && will_be_met(*light, surface)))
           add_direct(out, {scene, *hit, surface, throughput, depth}, *light, {known, shadow_roulette});
       const auto next = surface.sample(lobe_choice, direction);
       if (!next) break;
@@ -53,7 +61,9 @@ class PathIntegrator : public Integrator {
       const float survival = survival_probability(depth, throughput * (eta_scale / audit_scale));
       if (roulette >= survival) break;
       throughput /= survival;
-      if (!next->is_straight) last = {*hit, next->pdf, next->is_delta};
+      looks_through = looks_through && next->is_transmitted;
+      if (!next->is_straight) last = {*hit, next->pdf, next->is_delta || looks_through};
+      looks_through = looks_through && !next->is_diffuse;
       segment = hit->spawn(next->wi);
       hit = intersect(scene, segment);
       ++out.rays.bounce;
@@ -101,6 +111,14 @@ class PathIntegrator : public Integrator {
     if (only_met || light_pdf == 0) return radiance;
     if (options_.light_sampling == LightSampling::light) return {0, 0, 0};
     return radiance * power_heuristic(last.pdf, light_pdf);
+  }
+
+  /// Whether a surface lets through some light that it does not scatter all around.
+  static bool is_clear(const Shading& surface) { return !is_black(surface.specular().rays.transmitted); }
+  /// Whether a light is left to the ray that passes a clear surface: behind rough ones too, what the camera
+  /// sees is either surface or background, and only that ray can tell.
+  static bool will_be_met(const LightSample& light, const Shading& surface) {
+    return !light.is_delta && surface.is_transmitted(light.wi);
   }
 
   /// Next-event estimation: light from one sampled light, weighted against the BSDF's own sampling.

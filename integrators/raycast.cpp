@@ -56,17 +56,24 @@ constexpr std::array<ShowEntry, 7> shows{{
 class RaycastIntegrator : public Integrator {
  public:
   explicit RaycastIntegrator(const IntegratorOptions& options)
-      : show_(find_by_name(shows, "thing to show", options.show).show) {}
+      : show_(find_by_name(shows, "thing to show", options.show).show),
+        background_apart_(options.background_apart) {}
 
   Estimate estimate(const Scene& scene, const Ray& ray, Sampler&, float) const override {
     Estimate out;
     ++out.rays.camera;
-    if (const auto hit = scene.intersect(ray)) out.radiance = show_(scene, ray, *hit);
+    const auto hit = scene.intersect(ray);
+    out.met_surface = hit.has_value();
+    if (hit)
+      out.radiance = show_(scene, ray, *hit);
+    else if (background_apart_)
+      out.background = {1, 1, 1};
     return out;
   }
 
  private:
   Show show_;
+  bool background_apart_;
 };
 
 }  // namespace

@@ -25,8 +25,10 @@ class WhittedIntegrator : public Integrator {
     ++walk.out.rays.camera;
     const Segment segment = camera_segment(scene, ray);
     const Rgb response = camera_response(scene, segment);
+    const auto hit = intersect_from_camera(scene, segment);
+    walk.out.met_surface = hit.has_value();
     walk.out.radiance =
-        response * arriving(walk, segment, intersect_from_camera(scene, segment), {1, response, true});
+        response * arriving(walk, segment, hit, {1, response, true, options_.background_apart});
     return walk.out;
   }
 
@@ -47,14 +49,19 @@ class WhittedIntegrator : public Integrator {
   /// What a ray carries on its way from the eye.
   struct Carried {
     int depth;
-    Rgb weight;          ///< of what it finds in the final pixel
-    bool sees_emitters;  ///< false where direct lighting has counted them already
+    Rgb weight;            ///< of what it finds in the final pixel
+    bool sees_emitters;    ///< false where direct lighting has counted them already
+    bool sees_background;  ///< where it leaves the scene, it is the background that shows
   };
 
   Rgb arriving(Walk& walk, const Segment& segment, const std::optional<Interaction>& hit,
                const Carried& carried) const {
     const Ray& ray = segment.ray;
     const Rgb passed = transmittance(walk.scene.volumes().medium(segment.media), hit ? hit->t : ray.t_max);
+    if (!hit && carried.sees_background) {
+      walk.out.background += carried.weight * passed;
+      return {0, 0, 0};
+    }
     Rgb radiance(0, 0, 0);
     if (carried.sees_emitters) radiance = walk.scene.emitted(nullptr, ray, hit ? &*hit : nullptr).radiance;
     if (!hit || carried.depth >= options_.max_depth) return radiance * passed;
@@ -64,8 +71,10 @@ class WhittedIntegrator : public Integrator {
     const auto [rays, reflected] = surface.specular();
     if (rays.alpha <= sharp_alpha) {
       // A lobe of some width has shown the lights in direct() already.
-      const Carried next{carried.depth + 1, carried.weight * passed, rays.alpha < Ggx::smooth_limit};
+      const bool is_smooth = rays.alpha < Ggx::smooth_limit;
+      Carried next{carried.depth + 1, carried.weight * passed, is_smooth, false};
       radiance += follow(walk, *hit, reflected, rays.reflected, next);
+      next.sees_background = carried.sees_background && is_smooth;
       radiance += follow(walk, *hit, rays.refracted, rays.transmitted, next);
     }
     return radiance * passed;

@@ -11,7 +11,7 @@ struct ShadingSample {
   Vec3f wi;
   Rgb weight;
   float pdf, eta;
-  bool is_delta, is_transmitted, is_straight;
+  bool is_delta, is_transmitted, is_straight, is_diffuse;
 };
 
 /// A surface as light meets it from wo: the BSDF in its shading frame, spoken to in world directions.
@@ -42,7 +42,8 @@ class Shading {
                          local->eta,
                          local->is_delta(),
                          local->is_transmitted(),
-                         local->is_straight()};
+                         local->is_straight(),
+                         local->lobe == Lobe::diffuse};
   }
 
   /// Whether light from wi passes through the surface.

@@ -111,12 +111,18 @@ class Calibration {
 
 void Calibration::add(const CalibrationRun& run, const Truth& truth) {
   Deciles& deciles = deciles_.emplace_back();
+  const bool counts_all = std::none_of(run.coverage.values.begin(), run.coverage.values.end(),
+                                       [](float covered) { return covered > 0; });
   double image = 0;
+  size_t counted = 0;
   for (size_t i = 0; i < run.picture.values.size(); ++i) {
     const size_t pixel = i / 3;
     const double scale = truth.scale.values[i];
     const double squared = square(double(run.picture.values[i]) - truth.value.values[i]);
-    image += relative_squared(squared - truth.variance.values[i], scale);
+    if (counts_all || run.coverage.values[pixel] > 0) {
+      image += relative_squared(squared - truth.variance.values[i], scale);
+      ++counted;
+    }
     if (run.layers.unreliable.values[pixel] > 0) continue;
     // Both wander about the truth.
     const double variance = square(run.layers.standard_error.values[i]) + truth.variance.values[i];
@@ -130,7 +136,7 @@ void Calibration::add(const CalibrationRun& run, const Truth& truth) {
   }
   pixels_ += run.layers.unreliable.values.size();
   for (const float flag : run.layers.unreliable.values) flagged_ += flag > 0;
-  const double mean = image / double(run.picture.values.size());
+  const double mean = image / double(counted);
   images_.push_back({run.error.rel_rmse, run.error.low, run.error.high, std::sqrt(std::max(0.0, mean)),
                      run.samples_per_pixel});
 }
@@ -199,6 +205,7 @@ Json Calibration::json(double asked) const {
 
 CalibrationRun::CalibrationRun(const RenderResult& result)
     : picture(result.film.image()),
+      coverage(result.film.coverage()),
       layers(error_layers(result.film)),
       error(result.error),
       samples_per_pixel(double(result.samples) / (double(result.film.width()) * result.film.height())) {}

@@ -25,6 +25,7 @@ struct CalibrationRun {
   explicit CalibrationRun(const RenderResult& result);
 
   Image picture;
+  Image coverage;  ///< Film::coverage()
   ErrorLayers layers;
   ErrorEstimate error;
   double samples_per_pixel;

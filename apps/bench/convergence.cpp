@@ -96,7 +96,8 @@ Run measure(Candidate& candidate, const Camera& camera, const RenderSettings& op
   run.seconds = result.seconds;
   run.samples_per_pixel = double(result.samples) / (double(picture.width) * picture.height);
   run.rays = result.rays.camera + result.rays.bounce + result.rays.shadow;
-  run.rel_mse = std::max(0.0, difference(picture, reference.picture).rel_mse - reference.rel_mse);
+  const Image shown = result.film.coverage();
+  run.rel_mse = std::max(0.0, difference(picture, reference.picture, &shown).rel_mse - reference.rel_mse);
   run.estimate = result.error;
   return run;
 }

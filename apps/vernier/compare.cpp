@@ -61,6 +61,7 @@ Json to_json(const CompareFlags& flags, const Comparison& comparison,
                            {"stop_exposure", comparison.flip->stop_exposure},
                            {"exposures", comparison.flip->exposures}});
   }
+  if (comparison.shown) json["shown"] = *comparison.shown;
   if (comparison.bias) json["bias"] = to_json(*comparison.bias);
   json["failed"] = failed;
   return json;
@@ -95,6 +96,9 @@ void print_text(const CompareFlags& flags, const Comparison& comparison) {
   const auto rgb = [](const std::array<double, 3>& v) {
     return fmt::format("{:.6g} {:.6g} {:.6g}", v[0], v[1], v[2]);
   };
+  if (comparison.shown)
+    line("pixels", fmt::format("{:<12.6g} part that shows a surface, which mse to largest and means are of",
+                               *comparison.shown));
   line("mean x", rgb(comparison.difference.mean));
   line("mean r", rgb(comparison.difference.reference_mean));
   if (!comparison.bias) return;

@@ -3,11 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include "core/base/names.h"
 #include "core/image/image_io.h"
+#include "integrators/render/picture.h"
 #include "vernier/error.h"
 
 namespace vernier::apps {
@@ -23,6 +25,7 @@ constexpr Metric table[] = {
     {"largest", "max |x-r|", [](const Comparison& c) { return std::optional(c.difference.largest); }},
     {"not_finite", "values that are NaN or infinite, left out of the above",
      [](const Comparison& c) { return std::optional(double(c.difference.not_finite)); }},
+    {"alpha", "root mean square difference of alpha", [](const Comparison& c) { return c.alpha; }},
     {"flip", "mean perceived difference, 0 to 1",
      [](const Comparison& c) { return c.flip ? std::optional(c.flip->mean) : std::nullopt; }},
     {"differing", "blocks of pixels whose expectations differ, by both error layers",
@@ -60,6 +63,37 @@ struct MeasuredFile {
   }
 };
 
+/// None where the picture is opaque everywhere.
+std::optional<Image> alpha_of(const LayeredImage& picture) {
+  auto alpha = picture.single("A");
+  const auto is_opaque = [](float value) { return value == 1; };
+  if (alpha && std::all_of(alpha->values.begin(), alpha->values.end(), is_opaque)) alpha.reset();
+  return alpha;
+}
+
+/// One channel, 0 where neither picture shows a surface; none when neither tells.
+std::optional<Image> shown_pixels(const LayeredImage& x, const LayeredImage& r) {
+  auto shown = coverage_of(x);
+  auto other = coverage_of(r);
+  if (!shown) return other;
+  if (other && other->values.size() == shown->values.size())
+    for (size_t i = 0; i < shown->values.size(); ++i)
+      shown->values[i] = std::max(shown->values[i], other->values[i]);
+  return shown;
+}
+
+double part_above_zero(const Image& image) {
+  const auto above = std::count_if(image.values.begin(), image.values.end(), [](float v) { return v > 0; });
+  return double(above) / double(image.values.size());
+}
+
+/// Of two pictures of one channel and one size.
+double root_mean_square(const Image& x, const Image& r) {
+  double sum = 0;
+  for (size_t i = 0; i < x.values.size(); ++i) sum += square(double(x.values[i]) - double(r.values[i]));
+  return std::sqrt(sum / double(x.values.size()));
+}
+
 }  // namespace
 
 std::span<const Metric> metrics() { return table; }
@@ -71,12 +105,21 @@ Comparison compare_files(const std::string& picture, const std::string& referenc
     throw Error(ErrorKind::usage, fmt::format("{} holds {} and {} {}; compare pictures of one kind", picture,
                                               x.linear ? "linear light" : "display values", reference,
                                               r.linear ? "linear light" : "display values"));
+  const auto x_alpha = alpha_of(x), r_alpha = alpha_of(r);
+  if (x_alpha.has_value() != r_alpha.has_value())
+    throw Error(ErrorKind::usage,
+                fmt::format("{} has alpha and {} has none; compare pictures of one kind, 'develop "
+                            "--background' puts something behind a transparent one",
+                            x_alpha ? picture : reference, x_alpha ? reference : picture));
   const Image x_rgb = x.rgb(), r_rgb = r.rgb();
   Comparison result;
   result.width = r.image.width;
   result.height = r.image.height;
   result.linear = r.linear;
-  result.difference = difference(x_rgb, r_rgb);
+  const auto shown = shown_pixels(x, r);
+  result.difference = difference(x_rgb, r_rgb, shown ? &*shown : nullptr);
+  if (shown) result.shown = part_above_zero(*shown);
+  if (x_alpha) result.alpha = root_mean_square(*x_alpha, *r_alpha);
   result.peak = r.linear ? result.difference.reference_largest : 1;
   if (options.flip) result.flip = r.linear ? hdr_flip(x_rgb, r_rgb) : flip(x_rgb, r_rgb);
   const MeasuredFile x_measured(x, x_rgb), r_measured(r, r_rgb);
@@ -103,7 +146,9 @@ std::string Limit::complaint(const Comparison& comparison) const {
   if (!value)
     throw Error(ErrorKind::usage, {}, "--fail",
                 fmt::format("{} was not measured: {}", metric_->name,
-                            metric_->name == "flip" ? "--no-flip was given" : "a file has no error layer"));
+                            metric_->name == "flip"    ? "--no-flip was given"
+                            : metric_->name == "alpha" ? "the pictures have no alpha"
+                                                       : "a file has no error layer"));
   if (above_ ? *value <= bound_ : *value >= bound_) return {};
   return fmt::format("{} is {:.6g}, {} {:.6g}", metric_->name, *value, above_ ? "above" : "below", bound_);
 }

@@ -23,9 +23,11 @@ struct ComparisonOptions {
 /// What was measured of a picture x and its reference r.
 struct Comparison {
   int width = 0, height = 0;
-  bool linear = false;  ///< both hold linear light rather than display values
-  double peak = 1;      ///< that psnr counts from: 1 for display values, else the largest value of r
-  ImageDifference difference;
+  bool linear = false;          ///< both hold linear light rather than display values
+  double peak = 1;              ///< that psnr counts from: 1 for display values, else the largest value of r
+  ImageDifference difference;   ///< over the pixels that show a surface, where a file tells
+  std::optional<double> shown;  ///< part of the pixels that do
+  std::optional<double> alpha;  ///< root mean square difference, over all pixels, when both files have it
   std::optional<FlipResult> flip;
   std::optional<BiasTest> bias;  ///< when both files have an error layer
   bool denoised = false;         ///< either picture: its error then includes what the filter did to it

@@ -20,9 +20,10 @@ struct DenoiseFlags {
   bool quiet = false;
 };
 
-/// What of a noisy picture goes into the denoised one's file.
+/// What of a noisy picture goes into the denoised one's file. Alpha is not filtered.
 LayeredImage color_and_reliability(const LayeredImage& noisy) {
-  LayeredImage picture{noisy.rgb(), {"R", "G", "B"}, noisy.metadata, true};
+  LayeredImage picture = color_and_alpha(noisy);
+  picture.metadata = noisy.metadata;
   if (const auto unreliable = noisy.single("error.unreliable"))
     picture.append(*unreliable, {"error.unreliable"});
   return picture;
@@ -42,6 +43,7 @@ ExitCode run_denoise(const DenoiseFlags& flags, const std::string& command_line)
   if (!noisy.linear)
     throw Error(ErrorKind::input, flags.input, {},
                 "holds display values; expected scene-linear ones, as in .exr");
+  if (noisy.single("A")) require_alpha_fits(flags.output);
   const Denoised denoised = denoise(noisy, denoiser);
   LayeredImage picture = color_and_reliability(noisy);
   put_into(picture, denoised);
@@ -60,7 +62,9 @@ ExitCode run_denoise(const DenoiseFlags& flags, const std::string& command_line)
 void register_denoise(Program& program) {
   CLI::App* command = program.app.add_subcommand("denoise", "Filter the noise out of a picture");
   auto flags = std::make_shared<DenoiseFlags>();
-  command->add_option("IN", flags->input, "scene-linear picture, best with --aov error,half,albedo,normal")
+  command
+      ->add_option("IN", flags->input,
+                   "scene-linear picture, best with --aov error,half,albedo,normal,coverage")
       ->type_name("");
   command->add_option("-o,--output", flags->output, "denoised picture: .exr, or .png or .jpg for display")
       ->type_name("FILE");
@@ -71,7 +75,7 @@ void register_denoise(Program& program) {
   add_threads_flag(*command, flags->threads);
   command->add_flag("-q,--quiet", flags->quiet, "say nothing but errors");
   command->footer(
-      "Example: vernier render scene.glb -o a.exr --aov error,half,albedo,normal --spp 16\n"
+      "Example: vernier render scene.glb -o a.exr --aov error,half,albedo,normal,coverage --spp 16\n"
       "         vernier denoise a.exr -o b.exr");
   command->callback([&program, flags] {
     program.run = [&program, flags] { return run_denoise(*flags, program.command_line); };

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "integrators/render/picture.h"
+
 namespace vernier::apps {
 namespace {
 
@@ -73,7 +75,8 @@ bool print_requested_denoisers(const std::string& filter) {
 }
 
 Denoised denoise(const LayeredImage& picture, const Denoiser& denoiser) {
-  const NoisyImage noisy{picture.rgb(), picture.layer("error"), picture.layer("albedo"), picture.layer("N")};
+  const NoisyImage noisy{picture.rgb(), picture.layer("error"), picture.layer("albedo"), picture.layer("N"),
+                         coverage_of(picture)};
   const auto halves = find_halves(picture);
   if (!halves) return {denoiser.filter(noisy), std::nullopt, std::nullopt};
   const float left = left_by_stratification(*halves);

@@ -13,7 +13,7 @@
 namespace vernier::apps {
 
 /// Layers that denoising wants of a render, as --aov takes them.
-inline constexpr const char* layers_for_denoising = "error,half,albedo,normal";
+inline constexpr const char* layers_for_denoising = "error,half,albedo,normal,coverage";
 
 /// Prints the filters when `filter` is "help"; false: it is not.
 bool print_requested_denoisers(const std::string& filter);

@@ -11,6 +11,7 @@
 #include "apps/vernier/messages.h"
 #include "apps/vernier/outputs.h"
 #include "core/base/parallel.h"
+#include "core/base/quantities.h"
 #include "integrators/render/picture.h"
 #include "vernier/error.h"
 
@@ -18,7 +19,7 @@ namespace vernier::apps {
 namespace {
 
 struct DevelopFlags {
-  std::string input, denoise, layer;
+  std::string input, denoise, layer, background;
   std::vector<std::string> outputs;
   DisplayOptions display;
   unsigned threads = 0;
@@ -36,6 +37,24 @@ Image layer_as_color(const LayeredImage& picture, const std::string& name, const
   Image grey(single->width, single->height, 3);
   for (size_t i = 0; i < grey.values.size(); ++i) grey.values[i] = single->values[i / 3];
   return grey;
+}
+
+/// Puts the colour that was asked for behind a transparent picture, which then is no more.
+void put_behind(LayeredImage& picture, const DevelopFlags& flags) {
+  const auto alpha = picture.single("A");
+  if (!alpha)
+    throw Error(ErrorKind::usage, flags.input, "--background",
+                flags.layer.empty() ? "has no alpha, so nothing behind it would show"
+                                    : "is for the colour, and --layer shows something else");
+  const auto [r, g, b] = parse_color(flags.background);
+  Image color = picture.rgb();
+  for (int y = 0; y < color.height; ++y)
+    for (int x = 0; x < color.width; ++x) {
+      const float through = 1 - *alpha->pixel(x, y);
+      float* value = color.pixel(x, y);
+      for (const float behind : {r, g, b}) *value++ += through * behind;
+    }
+  picture = {std::move(color), {"R", "G", "B"}, {}, true};
 }
 
 void require_arguments(const DevelopFlags& flags) {
@@ -65,17 +84,18 @@ ExitCode run_develop(const DevelopFlags& flags, const std::string& command_line)
   metadata["vernier:developCommand"] = command_line;
   if (!flags.layer.empty()) metadata["vernier:layer"] = flags.layer;
   std::string done;
-  if (denoiser) {
+  if (!flags.layer.empty()) {
+    picture = {layer_as_color(picture, flags.layer, flags.input), {"R", "G", "B"}, {}, true};
+  } else if (denoiser) {
     const Denoised denoised = denoise(picture, *denoiser);
     for (const auto& [name, value] : denoised_metadata(*denoiser, denoised.error)) metadata[name] = value;
-    picture = {denoised.picture, {"R", "G", "B"}, {}, true};
+    put_into(picture, denoised);
     done = ", " + denoised_text(*denoiser, denoised.error);
-  } else {
-    picture = {flags.layer.empty() ? picture.rgb() : layer_as_color(picture, flags.layer, flags.input),
-               {"R", "G", "B"},
-               {},
-               true};
   }
+  picture = color_and_alpha(picture);
+  if (!flags.background.empty()) put_behind(picture, flags);
+  if (picture.image.channels > 3)
+    for (const auto& output : flags.outputs) require_alpha_fits(output);
 
   Outputs outputs;
   for (const auto& output : flags.outputs) {
@@ -102,6 +122,11 @@ void register_develop(Program& program) {
       ->type_name("FILTER");
   command->add_option("--layer", flags->layer, "show this layer of the file instead of its colour")
       ->type_name("NAME");
+  command
+      ->add_option("--background", flags->background,
+                   "put this behind a transparent picture: sRGB '#rrggbb' or scene-linear R,G,B")
+      ->check(parsed_by(parse_color))
+      ->type_name("COLOUR");
   add_threads_flag(*command, flags->threads);
   command->add_flag("-q,--quiet", flags->quiet, "say nothing but errors");
   command->footer(

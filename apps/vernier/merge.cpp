@@ -54,7 +54,8 @@ struct Merged {
       return;
     }
     require_same_render(path, checkpoint.identity, identity);
-    if (more.film.width() != result->film.width() || more.film.height() != result->film.height())
+    if (more.film.width() != result->film.width() || more.film.height() != result->film.height() ||
+        more.film.has_alpha() != result->film.has_alpha())
       throw Error(ErrorKind::input, path, {}, "is damaged: its picture is not of the size that it says");
     result->film.merge(more.film);
     result->samples += more.samples;
@@ -96,6 +97,7 @@ ExitCode run_merge(const MergeFlags& flags, const std::string& command_line) {
   Merged merged;
   for (const auto& path : flags.inputs) merged.add(path);
   RenderResult& result = *merged.result;
+  if (result.film.has_alpha()) require_alpha_fits(flags.output);
   result.error = estimate_error(result.film);
   const LayeredImage picture = with_film_layers(result.film, chosen);
   write_picture(flags.output, picture, merged_metadata(merged, command_line), display);

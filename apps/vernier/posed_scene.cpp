@@ -9,6 +9,7 @@
 #include "apps/vernier/stopwatch.h"
 #include "scene/subject.h"
 #include "scene/turntable.h"
+#include "vernier/ground.h"
 
 namespace vernier::apps {
 namespace {
@@ -36,6 +37,7 @@ PosedScene::PosedScene(const RenderFlags& flags, const RunPlan& plan, SceneDescr
     chosen_ = all_cameras(cameras, log);
   else
     chosen_ = {{choose_camera(cameras, flags.camera, log), ""}};
+  if (flags.background.ground == "matte") add_ground(description);
   Stopwatch watch;
   scene_ = build_scene(std::move(description), {flags.accelerator});
   report_.build_seconds = watch.lap();

@@ -70,6 +70,7 @@ void add_integrator_flags(CLI::App& command, RenderFlags& flags) {
   command.add_option("--accelerator", flags.accelerator, "ray query structure; 'help' lists them")
       ->type_name("NAME");
   add_surroundings_flags(command, flags.surroundings);
+  add_background_flags(command, flags.background);
 }
 
 void add_output_flags(CLI::App& command, RenderFlags& flags) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/vernier/background_flags.h"
 #include "apps/vernier/camera_flags.h"
 #include "apps/vernier/commands.h"
 #include "apps/vernier/run_flags.h"
@@ -35,6 +36,7 @@ struct RenderFlags {
 
   CameraFlags camera;
   SurroundingsFlags surroundings;
+  BackgroundFlags background;
 
   std::string layers;   ///< --aov; empty: none
   std::string denoise;  ///< filter; empty: none

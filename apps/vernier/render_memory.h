@@ -8,7 +8,9 @@ namespace vernier::apps {
 /// What a render of one picture is made of, as far as memory goes.
 struct MemoryUse {
   bool adaptive = true;
-  int layer_channels = 0;     ///< beside the color's three
+  bool alpha = false;
+  bool background_picture = false;
+  int layer_channels = 0;     ///< beside the color's three, and alpha
   bool error_layers = false;  ///< whether some layer needs error_layers()
   bool denoise = false;
   bool display = false;  ///< whether a .png or .jpg is written

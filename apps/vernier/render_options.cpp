@@ -114,12 +114,22 @@ void check_standard_output(const RenderFlags& flags) {
     throw Error(ErrorKind::usage, "--format needs -o -; the names of files tell their format");
 }
 
+/// Outputs by names that tell their format.
+std::vector<std::string> named_outputs(const RenderFlags& flags) {
+  std::vector<std::string> names = flags.outputs;
+  for (std::string& name : names)
+    if (is_standard_stream(name)) name += "." + (flags.run.format.empty() ? "png" : flags.run.format);
+  return names;
+}
+
 }  // namespace
 
 MemoryUse memory_use(const RenderRequest& request) {
   const RenderFlags& flags = request.flags;
   MemoryUse use;
   use.adaptive = request.settings.adaptive;
+  use.alpha = request.settings.background.kind == Background::Kind::transparent;
+  use.background_picture = request.settings.background.kind == Background::Kind::picture;
   for (const Layer& layer : request.layers) {
     use.layer_channels += layer.channel_count();
     use.error_layers = use.error_layers || layer.need == LayerNeed::error;
@@ -159,6 +169,7 @@ RenderRequest check_render_flags(const RenderFlags& given) {
   request.flags.camera.turns = flags.run.turntable.has_value();
   if (!flags.accelerator.empty()) find_by_name(accelerators(), "accelerator", flags.accelerator);
   request.settings = make_settings(flags);
+  request.settings.background = choose_background(flags.background, named_outputs(flags));
   request.progress = parse_progress(flags);
   request.layer_list = choose_layers(flags);
   request.layers = find_layers(request.layer_list);

@@ -171,7 +171,7 @@ RenderFlags flags_for(const RenderFlags& flags, const RunPlan& plan, const std::
 
 void check_files(const RenderFlags& flags, const RunPlan& plan) {
   std::vector<std::string> read = plan.scenes, written;
-  read.insert(read.end(), {flags.surroundings.environment, flags.display.config});
+  read.insert(read.end(), {flags.surroundings.environment, flags.display.config, flags.background.file()});
   for_each_picture(flags, plan, [&](const RenderFlags& picture) {
     written.insert(written.end(), picture.outputs.begin(), picture.outputs.end());
     written.insert(written.end(), {picture.stats, picture.report, picture.checkpoint});

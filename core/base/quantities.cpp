@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
 
 #include "vernier/error.h"
+#include "vernier/image.h"
 
 namespace vernier {
 namespace {
@@ -123,6 +125,27 @@ std::array<float, 3> parse_point(std::string_view text) {
     point[i] = negative ? -*number : *number;
   }
   return point;
+}
+
+std::array<float, 3> parse_color(std::string_view text) {
+  std::string_view digits = text;
+  take(digits, '#');
+  uint32_t code = 0;
+  const char* end = digits.data() + digits.size();
+  const auto [stopped, status] = std::from_chars(digits.data(), end, code, 16);
+  if (digits.size() == 6 && status == std::errc() && stopped == end) {
+    const auto linear = [code](int shift) { return srgb_to_linear(float(code >> shift & 255) / 255); };
+    return {linear(16), linear(8), linear(0)};
+  }
+  std::array<float, 3> color{};
+  try {
+    color = parse_point(text);
+  } catch (const Error&) {
+    color[0] = -1;
+  }
+  if (*std::min_element(color.begin(), color.end()) < 0)
+    refuse(text, "a colour: sRGB such as '#ff8000', or scene-linear such as 0.2,0.2,0.2");
+  return color;
 }
 
 PixelSize parse_pixel_size(std::string_view text) {

@@ -31,6 +31,10 @@ float parse_margin(std::string_view text);
 /// Three finite numbers: "1.5,0,-2".
 std::array<float, 3> parse_point(std::string_view text);
 
+/// Scene-linear Rec.709 from three numbers from 0 on, "0.2,0.2,0.2", or from sRGB "#ff8000", whose # may be
+/// left out, as it begins a comment in shells.
+std::array<float, 3> parse_color(std::string_view text);
+
 /// "1280x720"; both at least 1 and at most 65536.
 PixelSize parse_pixel_size(std::string_view text);
 

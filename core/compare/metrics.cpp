@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "core/base/parallel.h"
@@ -21,9 +22,10 @@ struct RowSums {
   int64_t not_finite = 0;
 };
 
-RowSums sum_row(const Image& x, const Image& reference, int y) {
+RowSums sum_row(const Image& x, const Image& reference, const Image* shown, int y) {
   RowSums sums;
-  for (int column = 0; column < x.width; ++column)
+  for (int column = 0; column < x.width; ++column) {
+    if (shown && *shown->pixel(column, y) == 0) continue;
     for (int c = 0; c < 3; ++c) {
       const double a = x.pixel(column, y)[c], r = reference.pixel(column, y)[c];
       const int bad = !std::isfinite(a) + !std::isfinite(r);
@@ -42,6 +44,7 @@ RowSums sum_row(const Image& x, const Image& reference, int y) {
         sums.largest_x = column;
       }
     }
+  }
   return sums;
 }
 
@@ -51,7 +54,7 @@ double ImageDifference::psnr(double peak) const {
   return mse > 0 ? 10 * std::log10(peak * peak / mse) : std::numeric_limits<double>::infinity();
 }
 
-ImageDifference difference(const Image& x, const Image& reference) {
+ImageDifference difference(const Image& x, const Image& reference, const Image* shown) {
   if (x.width != reference.width || x.height != reference.height)
     throw Error(ErrorKind::usage,
                 fmt::format("pictures of {}x{} and {}x{} pixels cannot be compared; render both "
@@ -59,8 +62,12 @@ ImageDifference difference(const Image& x, const Image& reference) {
                             x.width, x.height, reference.width, reference.height));
   if (x.channels < 3 || reference.channels < 3)
     throw Error(ErrorKind::usage, "pictures to compare need three channels");
+  const auto is_empty = [](const Image& mask) {
+    return std::all_of(mask.values.begin(), mask.values.end(), [](float value) { return value == 0; });
+  };
+  if (shown && is_empty(*shown)) shown = nullptr;
   std::vector<RowSums> rows(size_t(x.height));
-  parallel_for(rows.size(), [&](size_t y) { rows[y] = sum_row(x, reference, int(y)); });
+  parallel_for(rows.size(), [&](size_t y) { rows[y] = sum_row(x, reference, shown, int(y)); });
 
   ImageDifference result;
   std::array<int64_t, 3> count{};

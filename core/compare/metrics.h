@@ -16,7 +16,8 @@ inline double relative_squared(double squared_error, double r) {
   return squared_error / (r * r + relative_error_epsilon);
 }
 
-/// Differences between a picture x and a reference r of the same size, over all pixels and three channels.
+/// Differences between a picture x and a reference r of the same size, over the pixels that count and three
+/// channels.
 struct ImageDifference {
   double mse = 0;                                  ///< mean (x - r)^2
   double rel_mse = 0;                              ///< mean (x - r)^2 / (r^2 + 0.01)
@@ -33,7 +34,9 @@ struct ImageDifference {
   double psnr(double peak) const;
 };
 
-/// Throws Error(usage) when sizes differ or either has fewer than three channels.
-ImageDifference difference(const Image& x, const Image& reference);
+/// Over all pixels, or over those where the one channel of `shown` is not 0, unless it is 0 everywhere: as
+/// ErrorEstimate counts pixels. Throws Error(usage) when sizes differ or a picture has fewer than three
+/// channels.
+ImageDifference difference(const Image& x, const Image& reference, const Image* shown = nullptr);
 
 }  // namespace vernier

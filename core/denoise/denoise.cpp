@@ -129,13 +129,27 @@ void add_pixel(BlockSums& sums, const Halves& noisy, const Halves& filtered, con
   ++sums.pixels;
 }
 
-std::vector<BlockSums> block_sums(const Halves& noisy, const Halves& filtered, const Image& weights) {
+/// One channel: 1 where a pixel counts, else 0.
+Image counted_pixels(const NoisyImage& picture) {
+  Image counted(picture.color.width, picture.color.height, 1);
+  std::fill(counted.values.begin(), counted.values.end(), 1.f);
+  if (!picture.coverage) return counted;
+  const std::vector<float>& covered = picture.coverage->values;
+  const auto is_covered = [](float part) { return part > 0; };
+  if (std::any_of(covered.begin(), covered.end(), is_covered))
+    std::transform(covered.begin(), covered.end(), counted.values.begin(), is_covered);
+  return counted;
+}
+
+std::vector<BlockSums> block_sums(const Halves& noisy, const Halves& filtered, const Image& weights,
+                                  const Image& counted) {
   const int columns = (noisy.width() + block - 1) / block, rows = (noisy.height() + block - 1) / block;
   std::vector<BlockSums> sums(size_t(columns) * size_t(rows));
   for (int y = 0; y < noisy.height(); ++y)
     for (int x = 0; x < noisy.width(); ++x)
-      add_pixel(sums[size_t(y / block) * size_t(columns) + size_t(x / block)], noisy, filtered, weights, x,
-                y);
+      if (*counted.pixel(x, y) > 0)
+        add_pixel(sums[size_t(y / block) * size_t(columns) + size_t(x / block)], noisy, filtered, weights, x,
+                  y);
   return sums;
 }
 
@@ -153,7 +167,8 @@ DenoisedError estimate(const std::vector<BlockSums>& blocks) {
     const double off = sums.denoised - mean * sums.pixels;
     spread += off * off;
   }
-  const double n = double(blocks.size());
+  const auto n = double(
+      std::count_if(blocks.begin(), blocks.end(), [](const BlockSums& sums) { return sums.pixels > 0; }));
   const double error = n > 1 ? std::sqrt(spread * n / (n - 1)) / total.pixels : std::abs(mean);
   const auto root = [](double x) { return std::sqrt(std::max(0.0, x)); };
   return {root(total.noisy / total.pixels), root(mean), root(mean - 1.96 * error), root(mean + 1.96 * error)};
@@ -162,11 +177,15 @@ DenoisedError estimate(const std::vector<BlockSums>& blocks) {
 /// The variance that is left, averaged about each pixel as a part of what the error is relative to, lest a
 /// lamp's is its dark surroundings', times one factor for the whole picture: its squared error over that
 /// variance, which lacks what the filter has blurred.
-Image pixel_errors(const Image& variance, const Image& weights, double rel_rmse) {
+Image pixel_errors(const Image& variance, const Image& weights, const Image& counted, double rel_rmse) {
   Image left = variance;
-  double sum = 0;
-  for (size_t i = 0; i < left.values.size(); ++i) sum += left.values[i] *= weights.values[i];
-  const double total = rel_rmse * rel_rmse * double(left.values.size());
+  double sum = 0, count = 0;
+  for (size_t i = 0; i < left.values.size(); ++i) {
+    left.values[i] *= weights.values[i];
+    sum += left.values[i] * counted.values[i / 3];
+    count += counted.values[i / 3];
+  }
+  const double total = rel_rmse * rel_rmse * count;
   const double factor = sum > 0 ? std::max(1.0, total / sum) : 1;
   const std::vector<float> mean(pool, 1.f / pool);
   left = convolve(left, mean, mean);
@@ -209,8 +228,9 @@ DenoisedHalves denoise_halves(const Denoiser& denoiser, const NoisyImage& first,
   DenoisedHalves result;
   result.picture =
       picture_of(noisy.width(), noisy.height(), [&](int x, int y) { return filtered.pixel(x, y); });
-  result.error = estimate(block_sums(noisy, filtered, weights));
-  result.pixel_error = pixel_errors(filtered.variance, weights, result.error.rel_rmse);
+  const Image counted = counted_pixels(first);
+  result.error = estimate(block_sums(noisy, filtered, weights, counted));
+  result.pixel_error = pixel_errors(filtered.variance, weights, counted, result.error.rel_rmse);
   return result;
 }
 

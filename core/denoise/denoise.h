@@ -16,6 +16,9 @@ struct NoisyImage {
   std::optional<Image> error = {};   ///< standard error of each value of `color`; else estimated from it
   std::optional<Image> albedo = {};  ///< reflectance: `color` is filtered divided by it, to keep texture
   std::optional<Image> normal = {};  ///< unit vectors: pixels that face elsewhere are not mixed
+  /// One channel: where it is 0, the pixel shows no surface and does not count in the picture's error, unless
+  /// that is so everywhere.
+  std::optional<Image> coverage = {};
 };
 
 /// One line of the table of denoisers. `filter` is a pure function. Pixels that are not finite, or beyond
@@ -41,7 +44,8 @@ std::span<const Denoiser> denoisers();
 /// that one is made.
 const Denoiser& find_denoiser(std::string_view name);
 
-/// The relative RMSE of a picture, sqrt(mean((x - r)^2 / (r^2 + 0.01))), with the ends of a 95 % interval.
+/// The relative RMSE of a picture, sqrt(mean((x - r)^2 / (r^2 + 0.01))) over the pixels that count, with the
+/// ends of a 95 % interval.
 struct DenoisedError {
   double noisy = 0;  ///< before denoising
   double rel_rmse = 0, low = 0, high = 0;

@@ -15,18 +15,20 @@ constexpr float albedo_scale = 0.1f;  // albedos this far apart are different su
 constexpr float normal_scale = 0.3f;  // and so are normals: 17 degrees
 
 void check(const NoisyImage& noisy) {
-  const auto check_one = [&](const Image& image, const char* name) {
-    if (image.width == noisy.color.width && image.height == noisy.color.height && image.channels == 3) return;
-    throw Error(
-        ErrorKind::usage,
-        fmt::format("{} of {}x{} pixels and {} channels cannot go with a picture of {}x{}; "
-                    "expected three channels of that size",
-                    name, image.width, image.height, image.channels, noisy.color.width, noisy.color.height));
+  const auto check_one = [&](const Image& image, const char* name, int channels = 3) {
+    if (image.width == noisy.color.width && image.height == noisy.color.height && image.channels == channels)
+      return;
+    throw Error(ErrorKind::usage,
+                fmt::format("{} of {}x{} pixels and {} channels cannot go with a picture of {}x{}; "
+                            "expected {} of that size",
+                            name, image.width, image.height, image.channels, noisy.color.width,
+                            noisy.color.height, channels == 1 ? "one channel" : "three channels"));
   };
   check_one(noisy.color, "picture");
   if (noisy.error) check_one(*noisy.error, "error layer");
   if (noisy.albedo) check_one(*noisy.albedo, "albedo layer");
   if (noisy.normal) check_one(*noisy.normal, "normal layer");
+  if (noisy.coverage) check_one(*noisy.coverage, "coverage layer", 1);
 }
 
 // Beyond the limit squares overflow; no radiance is that large.

@@ -55,17 +55,24 @@ Image8 to_display(const Image& scene_linear, const DisplayOptions& options) {
   const auto transform = config.transform(view);
 
   const float scale = std::exp2(options.exposure);
-  Image8 result(scene_linear.width, scene_linear.height, 3);
+  const bool has_alpha = scene_linear.channels == 4;
+  Image8 result(scene_linear.width, scene_linear.height, has_alpha ? 4 : 3);
   parallel_for(size_t(scene_linear.height), [&](size_t row) {
     const int y = int(row);
     std::vector<float> pixels(size_t(scene_linear.width) * 3);
     for (int x = 0; x < scene_linear.width; ++x) {
       float* rgb = &pixels[size_t(x) * 3];
-      for (int c = 0; c < 3; ++c) rgb[c] = usable(scene_linear.pixel(x, y)[c], scale);
+      const float* value = scene_linear.pixel(x, y);
+      const float cover = has_alpha && value[3] > 0 ? value[3] : 1;
+      for (int c = 0; c < 3; ++c) rgb[c] = usable(value[c], scale / cover);
       if (neutral) khronos_neutral(rgb);
     }
     transform(pixels);
-    std::transform(pixels.begin(), pixels.end(), result.pixel(0, y), to_byte);
+    for (int x = 0; x < scene_linear.width; ++x) {
+      uint8_t* shown =
+          std::transform(&pixels[size_t(x) * 3], &pixels[size_t(x) * 3] + 3, result.pixel(x, y), to_byte);
+      if (has_alpha) *shown = to_byte(scene_linear.pixel(x, y)[3]);
+    }
   });
   return result;
 }

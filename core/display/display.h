@@ -28,8 +28,10 @@ struct DisplayOptions {
 /// Names of the views of the default display of that config, the default first.
 std::vector<std::string> display_views(const DisplayOptions& options);
 
-/// Scene-linear Rec.709 to 8-bit display values through OpenColorIO. Throws Error(usage) on an unknown view,
-/// listing the ones there are, and Error(input) on an unusable config.
+/// Scene-linear Rec.709 to 8-bit display values through OpenColorIO. A fourth channel is alpha, by which the
+/// other three are multiplied (associated); in the result they are not, as PNG has it (ISO/IEC 15948, 6.2).
+/// Throws Error(usage) on an unknown view, listing the ones there are, and Error(input) on an unusable
+/// config.
 Image8 to_display(const Image& scene_linear, const DisplayOptions& options);
 
 }  // namespace vernier

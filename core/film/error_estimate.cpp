@@ -48,7 +48,7 @@ struct RelativeSums {
 /// what is between.
 struct RowSums {
   RelativeSums least, likely, most;
-  size_t unreliable = 0;
+  size_t unreliable = 0, pixels = 0;
   bool complete = true;
 
   void add_pixel(const Film& film, const PixelEvidence& evidence, int x, int y);
@@ -57,6 +57,7 @@ struct RowSums {
     likely.add(other.likely);
     most.add(other.most);
     unreliable += other.unreliable;
+    pixels += other.pixels;
     complete = complete && other.complete;
   }
 };
@@ -75,7 +76,23 @@ void RowSums::add_pixel(const Film& film, const PixelEvidence& evidence, int x, 
   likely.add(middle);
   most.add(large);
   unreliable += *evidence.unreliable.pixel(x, y) != 0;
-  complete = complete && film.samples(x, y, 0) > 0 && film.samples(x, y, 1) > 0;
+  ++pixels;
+}
+
+/// Sums over the pixels that count: those that show a surface, or all where none does. (A plain background is
+/// without error, and the more of it there is, the less would be told of what stands before it.)
+RowSums sum_pixels(const Film& film, const PixelEvidence& evidence, bool covered_only) {
+  std::vector<RowSums> rows(size_t(film.height()));
+  parallel_for(rows.size(), [&](size_t y) {
+    for (int x = 0; x < film.width(); ++x) {
+      const bool is_sampled = film.samples(x, int(y), 0) > 0 && film.samples(x, int(y), 1) > 0;
+      rows[y].complete = rows[y].complete && is_sampled;
+      if (!covered_only || film.is_covered(x, int(y))) rows[y].add_pixel(film, evidence, x, int(y));
+    }
+  });
+  RowSums total;
+  for (const RowSums& row : rows) total.add(row);
+  return total;
 }
 
 }  // namespace
@@ -84,13 +101,9 @@ size_t estimate_error_bytes_per_pixel() { return gather_evidence_bytes_per_pixel
 
 ErrorEstimate estimate_error(const Film& film) {
   const PixelEvidence evidence = gather_evidence(film);
-  std::vector<RowSums> rows(size_t(film.height()));
-  parallel_for(rows.size(), [&](size_t y) {
-    for (int x = 0; x < film.width(); ++x) rows[y].add_pixel(film, evidence, x, int(y));
-  });
-  RowSums total;
-  for (const RowSums& row : rows) total.add(row);
-  const double n = double(film.width()) * film.height();
+  RowSums total = sum_pixels(film, evidence, true);
+  if (total.pixels == 0) total = sum_pixels(film, evidence, false);
+  const auto n = double(total.pixels);
   ErrorEstimate estimate;
   estimate.unreliable = double(total.unreliable) / n;
   if (!total.complete) {

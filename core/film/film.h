@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,25 +11,47 @@
 
 namespace vernier {
 
+/// What one camera sample found.
+struct FilmSample {
+  Rgb radiance{0, 0, 0};
+  float transparency = 0;   ///< how much of what lies behind the picture would show; not negative
+  bool met_surface = true;  ///< false: the camera saw nothing but what lies behind all surfaces
+};
+
 /// Sums of samples per pixel, in double, kept in two halves whose samples are independent of each other:
 /// their difference measures the error of their mean. One thread at a time may add to a given pixel.
 class Film {
  public:
   static constexpr int halves = 2;
 
-  Film(int width, int height) : width_(width), height_(height), cells_(size_t(width) * height * halves) {}
+  /// Without alpha, transparency is not kept.
+  Film(int width, int height, bool has_alpha = false)
+      : width_(width),
+        height_(height),
+        cells_(size_t(width) * height * halves),
+        transparency_(has_alpha ? cells_.size() : 0) {}
 
   /// A sample that is not finite or is negative in any channel is not stored; returns false for it.
-  [[nodiscard]] bool add(int x, int y, int half, const Rgb& radiance) {
+  [[nodiscard]] bool add(int x, int y, int half, const FilmSample& sample) {
+    const Rgb& radiance = sample.radiance;
     const float smallest = std::min(radiance.x, std::min(radiance.y, radiance.z));
     if (!(smallest >= 0) || !is_finite(radiance)) return false;
+    if (has_alpha()) {
+      if (!(sample.transparency >= 0) || !std::isfinite(sample.transparency)) return false;
+      transparency_[index(x, y, half)] += double(sample.transparency);
+    }
     Cell& cell = cells_[index(x, y, half)];
+    cell.met_surface |= uint32_t(sample.met_surface);
     const Vec3d value(radiance);
     cell.sum += value;
     cell.sum_of_squares += value * value;
     cell.largest = std::max(cell.largest, max_component(radiance));
     ++cell.count;
     return true;
+  }
+  /// The same of a sample of an opaque surface.
+  [[nodiscard]] bool add(int x, int y, int half, const Rgb& radiance) {
+    return add(x, y, half, FilmSample{radiance});
   }
 
   /// Adds the samples of another film of the same size, each half to its own. The halves stay independent
@@ -37,6 +60,7 @@ class Film {
 
   int width() const { return width_; }
   int height() const { return height_; }
+  bool has_alpha() const { return !transparency_.empty(); }
 
   uint32_t samples(int x, int y, int half) const { return cells_[index(x, y, half)].count; }
   uint32_t samples(int x, int y) const { return samples(x, y, 0) + samples(x, y, 1); }
@@ -53,6 +77,15 @@ class Film {
   /// The pixel: the mean of the two halves' means, so that its weights do not depend on the samples even when
   /// the number of samples does; of the first half alone while the second has none.
   Vec3d pixel(int x, int y) const;
+  /// How much of what lies behind it the pixel hides, in [0, 1], weighted like pixel(), which holds the
+  /// colour times it. 1 on a film without alpha; 0 without samples on one with it.
+  double alpha(int x, int y) const;
+  /// Whether any sample of the pixel met a surface.
+  bool is_covered(int x, int y) const {
+    return cells_[index(x, y, 0)].met_surface || cells_[index(x, y, 1)].met_surface;
+  }
+  /// One channel: 1 where it is, else 0.
+  Image coverage() const;
   /// Part of the sum of all samples that the largest one makes up, in [0, 1]; the brightest channel counts.
   double largest_share(int x, int y) const;
 
@@ -63,7 +96,11 @@ class Film {
   /// machine.
   std::span<const std::byte> bytes() const { return std::as_bytes(std::span(cells_)); }
   std::span<std::byte> bytes() { return std::as_writable_bytes(std::span(cells_)); }
+  /// The rest of it; empty without alpha.
+  std::span<const std::byte> alpha_bytes() const { return std::as_bytes(std::span(transparency_)); }
+  std::span<std::byte> alpha_bytes() { return std::as_writable_bytes(std::span(transparency_)); }
   static constexpr size_t bytes_per_pixel() { return halves * sizeof(Cell); }
+  static constexpr size_t alpha_bytes_per_pixel() { return halves * sizeof(double); }
   /// Whether add() can have led to these sums; false only of damaged bytes.
   bool is_plausible() const;
 
@@ -71,7 +108,8 @@ class Film {
   struct Cell {
     Vec3d sum{0, 0, 0};
     Vec3d sum_of_squares{0, 0, 0};
-    uint32_t count = 0;
+    uint32_t count : 31 = 0;
+    uint32_t met_surface : 1 = 0;
     float largest = 0;
   };
   /// Sum of the squared distances of the samples to their mean.
@@ -80,6 +118,7 @@ class Film {
 
   int width_, height_;
   std::vector<Cell> cells_;
+  std::vector<double> transparency_;  ///< sums, by cell; empty without alpha
 };
 
 }  // namespace vernier

@@ -11,12 +11,13 @@ namespace vernier {
 /// How wrong a picture probably is, without a reference. docs/error.md says what the figures mean and how
 /// they are verified.
 struct ErrorEstimate {
-  /// Relative RMSE of the image, sqrt(mean((x - r)^2 / (r^2 + 0.01))) over pixels and channels, x the image
-  /// and r the truth, with the ends of a 95 % interval for the error that this very image has. Not a number
-  /// while some pixel lacks a sample in either half.
+  /// Relative RMSE of the image, sqrt(mean((x - r)^2 / (r^2 + 0.01))) over channels and the pixels in which a
+  /// sample met a surface (all, where none did), x the image and r the truth, with the ends of a 95 %
+  /// interval for the error that this very image has. Of a transparent image, x is multiplied by alpha. Not a
+  /// number while some pixel lacks a sample in either half.
   double rel_rmse = 0, low = 0, high = 0;
-  /// Part of the pixels whose error figure is not to be trusted: too few samples, or most of what is known of
-  /// them comes from too few.
+  /// Part of these pixels whose error figure is not to be trusted: too few samples, or most of what is known
+  /// of them comes from too few.
   double unreliable = 0;
 };
 

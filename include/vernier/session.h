@@ -56,7 +56,8 @@ class VERNIER_API RenderSession {
   std::vector<Notice> load(const std::string& path);
 
   RenderStatus status() const;
-  /// R, G, B, scene-linear Rec.709, then the channels of `layers`: "error,albedo,...", or "all".
+  /// R, G, B, scene-linear Rec.709, A if the background is transparent (colours multiplied by it), then the
+  /// channels of `layers`: "error,albedo,...", or "all".
   LayeredImage picture(const std::string& layers = "") const;
   /// The same to a file: .exr with the layers; .png and .jpg as shown by the default view. Its header says
   /// how wrong it is. Throws Error(output).

@@ -21,6 +21,20 @@ struct IntegratorOptions {
   std::string show = "normal";                        ///< raycast: what to show
   float ambient = 0.05f;                              ///< whitted: constant ambient radiance
   float cutoff = 1e-3f;  ///< whitted: a recursive ray that would contribute less than this is not traced
+  /// What the camera sees behind all surfaces, straight or through clear ones, is no part of the light but is
+  /// told apart from it. A session sets it by RenderSettings::background.
+  bool background_apart = false;
+};
+
+/// What the camera sees behind all surfaces, straight or through clear ones. Only the surroundings light the
+/// scene and are mirrored in it.
+struct Background {
+  enum class Kind { surroundings, transparent, color, picture };
+  Kind kind = Kind::surroundings;
+  Rgb color{0, 0, 0};  ///< scene-linear Rec.709
+  /// Of a picture, which fills the whole frame, centred, cut where its shape is another. Eight- and
+  /// sixteen-bit files hold sRGB values, others scene-linear ones.
+  std::string file = {};
 };
 
 /// Pixels [x, x + width) x [y, y + height) of the full picture.
@@ -54,6 +68,7 @@ struct VERNIER_API RenderSettings {
   Crop crop;                  ///< what is rendered; zero width: everything
   CameraDescription camera;
   PixelFilter filter;
+  Background background;
   std::string integrator = "path";
   IntegratorOptions integrator_options;
   bool adaptive = true;  ///< spend samples where they lower the picture's error

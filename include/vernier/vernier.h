@@ -4,6 +4,7 @@
 // All of libvernier: read or describe a scene, build it, render it in a session.
 
 #include "vernier/error.h"
+#include "vernier/ground.h"
 #include "vernier/scene.h"
 #include "vernier/scene_file.h"
 #include "vernier/session.h"

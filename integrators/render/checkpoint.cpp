@@ -26,7 +26,7 @@ static_assert(std::endian::native == std::endian::little, "checkpoints are littl
 static_assert(sizeof(RenderResult::Look) == 6 * sizeof(double));
 static_assert(sizeof(TileLight) == 10 * sizeof(float));
 
-constexpr uint32_t format = 2;
+constexpr uint32_t format = 3;
 constexpr size_t fingerprint_length = 32;
 constexpr uint32_t longest_header = 1 << 20;
 
@@ -53,6 +53,7 @@ auto bytes_of(Values& values) {
 template <typename State, typename Plan, typename Visit>
 void for_each_array(State& state, Plan& plan_counts, const Visit& visit) {
   visit("film", state.so_far.film.bytes());
+  visit("alpha", state.so_far.film.alpha_bytes());
   visit("guide 1", state.guides[0].bytes());
   visit("guide 2", state.guides[1].bytes());
   visit("extra", bytes_of(state.drawn.extra));
@@ -70,6 +71,7 @@ Json header_of(const RenderIdentity& identity, const RenderState& state) {
               {"width", so_far.film.width()},
               {"height", so_far.film.height()},
               {"adaptive", !state.guides[0].bytes().empty()},
+              {"has_alpha", so_far.film.has_alpha()},
               {"done", state.done},
               {"guiding", state.drawn.guiding},
               {"looked_at", state.looked_at},
@@ -159,6 +161,7 @@ std::shared_ptr<RenderState> allocate_state(const Reader& reader, const Json& he
   const size_t height = whole_number(reader, header.at("height"), "height", longest_side);
   if (width == 0 || height == 0) reader.damaged("its picture has no pixels");
   const bool adaptive = header.at("adaptive").get<bool>();
+  const bool has_alpha = header.at("has_alpha").get<bool>();
   const Json& pass_header = header.at("pass");
   const uint32_t done = uint32_t(whole_number(reader, header.at("done"), "done", RenderState::most_samples));
   pass.width = int(width);
@@ -173,16 +176,17 @@ std::shared_ptr<RenderState> allocate_state(const Reader& reader, const Json& he
   };
   const size_t pixels = width * height;
   const size_t tiles = RenderState::tile_count(int(width), int(height));
-  const bool uneven = pass.size > 0 && bytes(5) > 0;
-  const std::array<size_t, 9> expected{pixels * Film::bytes_per_pixel(),
-                                       adaptive ? pixels * SampleGuide::bytes_per_pixel() : 0,
-                                       adaptive ? pixels * SampleGuide::bytes_per_pixel() : 0,
-                                       adaptive ? pixels * Film::halves * sizeof(uint32_t) : 0,
-                                       tiles * sizeof(TileLight),
-                                       uneven ? pixels * Film::halves * sizeof(uint16_t) : 0,
-                                       pass.size > 0 ? tiles * sizeof(uint32_t) : 0,
-                                       bytes(7) / sizeof(RenderResult::Look) * sizeof(RenderResult::Look),
-                                       bytes(8) / sizeof(BadSample) * sizeof(BadSample)};
+  const bool uneven = pass.size > 0 && bytes(6) > 0;
+  const std::array<size_t, 10> expected{pixels * Film::bytes_per_pixel(),
+                                        has_alpha ? pixels * Film::alpha_bytes_per_pixel() : 0,
+                                        adaptive ? pixels * SampleGuide::bytes_per_pixel() : 0,
+                                        adaptive ? pixels * SampleGuide::bytes_per_pixel() : 0,
+                                        adaptive ? pixels * Film::halves * sizeof(uint32_t) : 0,
+                                        tiles * sizeof(TileLight),
+                                        uneven ? pixels * Film::halves * sizeof(uint16_t) : 0,
+                                        pass.size > 0 ? tiles * sizeof(uint32_t) : 0,
+                                        bytes(8) / sizeof(RenderResult::Look) * sizeof(RenderResult::Look),
+                                        bytes(9) / sizeof(BadSample) * sizeof(BadSample)};
   uintmax_t total = 0;
   for (size_t i = 0; i < expected.size(); ++i) {
     if (bytes(i) != expected[i])
@@ -193,7 +197,7 @@ std::shared_ptr<RenderState> allocate_state(const Reader& reader, const Json& he
   if (arrays.size() != expected.size() || total != reader.left())
     reader.damaged(fmt::format("{} bytes follow its header, expected {}", reader.left(), total));
 
-  auto state = std::make_shared<RenderState>(int(width), int(height), adaptive);
+  auto state = std::make_shared<RenderState>(int(width), int(height), adaptive, has_alpha);
   state->done = done;
   for (size_t half = 0; half < Film::halves; ++half)
     state->drawn.guiding[half] =
@@ -201,8 +205,8 @@ std::shared_ptr<RenderState> allocate_state(const Reader& reader, const Json& he
   state->looked_at = uint32_t(whole_number(reader, header.at("looked_at"), "looked_at", done));
   if (uneven) pass.counts.resize(pixels * Film::halves);
   if (pass.size > 0) state->parts.resize(tiles);
-  state->so_far.convergence.resize(bytes(7) / sizeof(RenderResult::Look));
-  state->so_far.bad_sample_examples.resize(bytes(8) / sizeof(BadSample));
+  state->so_far.convergence.resize(bytes(8) / sizeof(RenderResult::Look));
+  state->so_far.bad_sample_examples.resize(bytes(9) / sizeof(BadSample));
   return state;
 }
 

@@ -93,6 +93,7 @@ LayeredImage assemble(const Film& film, std::span<const Layer> chosen, const Fir
   LayeredImage picture;
   picture.linear = true;
   picture.channel_names = {"R", "G", "B"};
+  if (film.has_alpha()) picture.channel_names.emplace_back("A");
   for (const Layer& layer : chosen)
     for (int c = 0; c < layer.channel_count(); ++c)
       picture.channel_names.emplace_back(layer.channels[size_t(c)]);
@@ -114,6 +115,7 @@ LayeredImage assemble(const Film& film, std::span<const Layer> chosen, const Fir
       float* out = picture.image.pixel(x, y);
       put(film.pixel(x, y), out);
       out += 3;
+      if (film.has_alpha()) *out++ = float(film.alpha(x, y));
       for (const Layer& layer : chosen) {
         layer.write(pixel, out);
         out += layer.channel_count();

@@ -48,8 +48,8 @@ std::span<const Layer> layers();
 /// Throws Error(usage) naming the layer nearest to an unknown one.
 std::vector<Layer> find_layers(const std::string& list);
 
-/// The picture of `film`: R, G, B and the channels of the chosen layers. The same values for any number of
-/// threads. `options` are those that it was rendered with.
+/// The picture of `film`: R, G, B, A if it has alpha, and the channels of the chosen layers. The same values
+/// for any number of threads. `options` are those that it was rendered with.
 LayeredImage with_layers(const Film& film, std::span<const Layer> chosen, const Scene& scene,
                          const Camera& camera, const RenderSettings& options);
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "vernier/error.h"
 #include "vernier/version.h"
 
 namespace vernier {
@@ -38,11 +39,36 @@ Metadata result_metadata(const RenderResult& result) {
   return metadata;
 }
 
-bool is_display_file(const std::string& path) {
+namespace {
+
+std::string extension_of(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return char(std::tolower(c)); });
-  return extension != ".exr";
+  return extension;
+}
+
+}  // namespace
+
+bool is_display_file(const std::string& path) { return extension_of(path) != ".exr"; }
+
+void require_alpha_fits(const std::string& path) {
+  const std::string extension = extension_of(path);
+  if (extension != ".exr" && extension != ".png")
+    throw Error(ErrorKind::usage, path, {},
+                "this kind of file has no alpha, and the picture is transparent; use .png or .exr, or "
+                "'render' or 'develop' with --background");
+}
+
+LayeredImage color_and_alpha(const LayeredImage& picture) {
+  LayeredImage result{picture.rgb(), {"R", "G", "B"}, {}, picture.linear};
+  if (const auto alpha = picture.single("A")) result.append(*alpha, {"A"});
+  return result;
+}
+
+std::optional<Image> coverage_of(const LayeredImage& picture) {
+  auto coverage = picture.single("coverage");
+  return coverage ? coverage : picture.single("A");
 }
 
 void write_picture(const std::string& path, const LayeredImage& picture, Metadata metadata,
@@ -52,14 +78,16 @@ void write_picture(const std::string& path, const LayeredImage& picture, Metadat
     return;
   }
   add_display(metadata, display);
-  write_image8(path, to_display(picture.rgb(), display), metadata);
+  const LayeredImage shown = color_and_alpha(picture);
+  if (shown.image.channels > 3) require_alpha_fits(path);
+  write_image8(path, to_display(shown.image, display), metadata);
 }
 
 std::vector<unsigned char> encode_picture(const std::string& format, const LayeredImage& picture,
                                           Metadata metadata, const DisplayOptions& display) {
   if (format == "exr") return encode_exr(picture.image, picture.channel_names, metadata);
   add_display(metadata, display);
-  return encode_image8(format, to_display(picture.rgb(), display), metadata);
+  return encode_image8(format, to_display(color_and_alpha(picture).image, display), metadata);
 }
 
 }  // namespace vernier

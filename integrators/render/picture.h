@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,19 @@ bool is_display_file(const std::string& path);
 std::vector<unsigned char> encode_picture(const std::string& format, const LayeredImage& picture,
                                           Metadata metadata, const DisplayOptions& display);
 
-/// `picture` has the color first and then layers, which only .exr files get. Display files are shown as
-/// `display` says; their headers tell how. Throws Error(output).
+/// Throws Error(usage) unless a file of that kind, by its extension, holds alpha.
+void require_alpha_fits(const std::string& path);
+
+/// R, G and B, and A if it has one, without layers and texts.
+LayeredImage color_and_alpha(const LayeredImage& picture);
+
+/// One channel: where it is 0, the picture shows no surface. Its layer `coverage`, else its alpha; empty
+/// without either.
+std::optional<Image> coverage_of(const LayeredImage& picture);
+
+/// `picture` has the color first and then layers, which only .exr files get; alpha is written associated to
+/// .exr and straight to .png. Display files are shown as `display` says; their headers tell how. Throws
+/// Error(output), and Error(usage) as require_alpha_fits().
 void write_picture(const std::string& path, const LayeredImage& picture, Metadata metadata,
                    const DisplayOptions& display);
 

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <mutex>
 
+#include "integrators/render/backdrop.h"
 #include "integrators/render/camera_sample.h"
 #include "integrators/render/observer_thread.h"
 #include "integrators/render/render_state.h"
@@ -44,6 +45,7 @@ class Renderer {
         camera_samples_(job.camera, job.settings),
         integrator_(job.integrator),
         options_(job.settings),
+        backdrop_(job.backdrop),
         crop_(rendered_part(job.settings)),
         stop_(stop),
         hooks_(std::move(hooks)),
@@ -229,13 +231,14 @@ class Renderer {
     const Estimate estimate = integrator_.estimate(scene_, sample.ray, sample.sampler, known(x, y, half));
     ++totals.samples;
     totals.rays += estimate.rays;
-    if (!result().film.add(x, y, half, estimate.radiance)) {
+    const FilmSample seen = backdrop_.behind(estimate, full_x, full_y);
+    if (!result().film.add(x, y, half, seen)) {
       ++totals.bad_samples;
       if (totals.bad_sample_examples.size() >= 8 * kept_bad_samples) keep_few(totals.bad_sample_examples);
       totals.bad_sample_examples.push_back({full_x, full_y, half, index});
     } else if (guides) {
       totals.light.add(estimate);
-      if (options_.adaptive) state_.guides[size_t(half)].add(x, y, estimate.radiance);
+      if (options_.adaptive) state_.guides[size_t(half)].add(x, y, seen.radiance, seen.met_surface);
     }
   }
 
@@ -293,6 +296,7 @@ class Renderer {
   const CameraSamples camera_samples_;
   const Integrator& integrator_;
   const RenderSettings& options_;
+  const Backdrop& backdrop_;
   const Crop crop_;
   const std::atomic<bool>& stop_;
   const RenderHooks hooks_;
@@ -319,8 +323,9 @@ void render(const RenderJob& job, RenderState& state, const std::atomic<bool>& s
 RenderResult render(const Scene& scene, const Camera& camera, const Integrator& integrator,
                     const RenderSettings& settings, const std::atomic<bool>& stop, RenderHooks hooks) {
   const Crop part = rendered_part(settings);
-  RenderState state(part.width, part.height, settings.adaptive);
-  render({scene, camera, integrator, settings}, state, stop, std::move(hooks));
+  const Backdrop backdrop(settings);
+  RenderState state(part.width, part.height, settings.adaptive, backdrop.is_transparent());
+  render({scene, camera, integrator, settings, backdrop}, state, stop, std::move(hooks));
   return std::move(state.so_far);
 }
 

@@ -16,6 +16,7 @@
 
 namespace vernier {
 
+class Backdrop;
 class Camera;
 class Scene;
 struct RenderState;
@@ -75,6 +76,7 @@ struct RenderJob {
   const Camera& camera;
   const Integrator& integrator;
   const RenderSettings& settings;
+  const Backdrop& backdrop;
 };
 
 /// Renders tiles of the picture in passes on all threads, from where `state` is, of a render with the same

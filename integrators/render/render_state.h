@@ -20,8 +20,8 @@ struct RenderState {
   static constexpr uint32_t most_samples = 1 << 30;
 
   /// Of a picture, or crop, of which nothing is rendered yet.
-  RenderState(int width, int height, bool adaptive)
-      : so_far(Film(width, height)),
+  RenderState(int width, int height, bool adaptive, bool has_alpha = false)
+      : so_far(Film(width, height, has_alpha)),
         guides{SampleGuide(adaptive ? width : 0, height), SampleGuide(adaptive ? width : 0, height)},
         drawn{{}, std::vector<uint32_t>(adaptive ? size_t(width) * height * Film::halves : 0)},
         light(size_t(tile_count())) {}
@@ -33,16 +33,17 @@ struct RenderState {
   int tile_columns() const { return (so_far.film.width() + tile_size - 1) / tile_size; }
   int tile_count() const { return tile_count(so_far.film.width(), so_far.film.height()); }
 
-  static constexpr size_t bytes_per_pixel(bool adaptive) {
+  static constexpr size_t bytes_per_pixel(bool adaptive, bool has_alpha) {
     // Guides, the plan, and which samples come next.
     const size_t guiding =
         Film::halves * (SampleGuide::bytes_per_pixel() + sizeof(uint16_t) + sizeof(uint32_t));
-    return Film::bytes_per_pixel() + (adaptive ? guiding : 0);
+    return Film::bytes_per_pixel() + (has_alpha ? Film::alpha_bytes_per_pixel() : 0) +
+           (adaptive ? guiding : 0);
   }
   /// Whether a render of a picture, or crop, of this size can go on from it.
-  bool fits(int width, int height, bool adaptive) const {
+  bool fits(int width, int height, bool adaptive, bool has_alpha) const {
     return so_far.film.width() == width && so_far.film.height() == height &&
-           guides[0].bytes().empty() == !adaptive;
+           so_far.film.has_alpha() == has_alpha && guides[0].bytes().empty() == !adaptive;
   }
 
   RenderResult so_far;                           ///< `reason` and `error` are not known yet

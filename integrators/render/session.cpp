@@ -10,6 +10,7 @@
 #include "core/base/build.h"
 #include "core/base/names.h"
 #include "core/display/display.h"
+#include "integrators/render/backdrop.h"
 #include "integrators/render/checkpoint.h"
 #include "integrators/render/layers.h"
 #include "integrators/render/picture.h"
@@ -43,6 +44,7 @@ void check(const Scene* scene, const RenderSettings& settings) {
   if (!(camera.focus_distance > 0))
     refuse(fmt::format("a focus distance of {} m; expected more than 0", camera.focus_distance));
   check_filter(settings.filter);
+  check(settings.background);
 }
 
 void check(const RenderLimits& limits) {
@@ -60,14 +62,19 @@ class RenderSession::State {
   State(std::shared_ptr<const Scene> its_scene, RenderSettings its_settings)
       : scene(std::move(its_scene)),
         settings((check(scene.get(), its_settings), check(its_settings.limits), std::move(its_settings))),
-        integrator(make_integrator(settings.integrator, settings.integrator_options)),
+        integrator(make_integrator(settings.integrator,
+                                   options_for(settings.background, settings.integrator_options))),
         camera(settings.camera, settings.width, settings.height),
-        render(rendered_part(settings).width, rendered_part(settings).height, settings.adaptive) {}
+        backdrop(settings),
+        render(rendered_part(settings).width, rendered_part(settings).height, settings.adaptive,
+               backdrop.is_transparent()) {}
 
   RenderIdentity identity() const {
     RenderIdentity identity{{"version", version()}};
     for (auto& pair : scene->identity()) identity.push_back(std::move(pair));
     for (auto& pair : identity_of(settings)) identity.push_back(std::move(pair));
+    if (auto print = backdrop.fingerprint(); !print.empty())
+      identity.emplace_back("background picture", std::move(print));
     return identity;
   }
 
@@ -75,6 +82,7 @@ class RenderSession::State {
   RenderSettings settings;
   const std::unique_ptr<Integrator> integrator;
   const Camera camera;
+  const Backdrop backdrop;
   RenderState render;
   RenderHooks hooks;
   std::atomic<std::thread::id> user{};  ///< the thread in a call; none: std::thread::id()
@@ -142,7 +150,7 @@ StopReason RenderSession::run(const std::atomic<bool>& stop) {
   const Use use(state_->user);
   if (!use.is_outermost()) refuse("run() cannot be called by a callback of its own");
   State& s = *state_;
-  vernier::render({*s.scene, s.camera, *s.integrator, s.settings}, s.render, stop, s.hooks);
+  vernier::render({*s.scene, s.camera, *s.integrator, s.settings, s.backdrop}, s.render, stop, s.hooks);
   return s.render.so_far.reason;
 }
 
@@ -180,7 +188,8 @@ std::vector<Notice> RenderSession::load(const std::string& path) {
                     path, other, platform()));
   require_same_render(path, checkpoint.identity, state_->identity());
   const Crop part = rendered_part(state_->settings);
-  if (!checkpoint.state->fits(part.width, part.height, state_->settings.adaptive))
+  if (!checkpoint.state->fits(part.width, part.height, state_->settings.adaptive,
+                              state_->backdrop.is_transparent()))
     throw Error(ErrorKind::input, path, {},
                 "is damaged: what it holds is not of the size that it says; use another checkpoint or render "
                 "from the beginning");

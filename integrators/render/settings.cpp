@@ -28,6 +28,11 @@ constexpr std::array<std::pair<std::string_view, CameraKind>, 3> camera_kinds{
     {{"perspective", CameraKind::perspective},
      {"orthographic", CameraKind::orthographic},
      {"panorama", CameraKind::panorama}}};
+constexpr std::array<std::pair<std::string_view, Background::Kind>, 4> background_kinds{
+    {{"surroundings", Background::Kind::surroundings},
+     {"transparent", Background::Kind::transparent},
+     {"color", Background::Kind::color},
+     {"picture", Background::Kind::picture}}};
 
 /// Calls visit(name, values...) for all that samples depend on. What is not listed here is in no settings
 /// file, and a checkpoint would go on without noticing that it has changed.
@@ -35,6 +40,7 @@ template <typename Settings, typename Visit>
 void for_each_setting(Settings& s, const Visit& visit) {
   auto& options = s.integrator_options;
   visit("camera", s.camera);
+  visit("background", s.background);
   visit("size", s.width, s.height);
   visit("crop", s.crop);
   visit("filter", s.filter);
@@ -73,6 +79,12 @@ Json encode(const CameraDescription& camera) {
           {"lens_radius", camera.lens_radius},
           {"focus_distance", std::isinf(camera.focus_distance) ? Json(nullptr) : Json(camera.focus_distance)},
           {"to_world", {encode(t.x), encode(t.y), encode(t.z), encode(t.origin)}}};
+}
+Json encode(const Background& background) {
+  for (const auto& [name, kind] : background_kinds)
+    if (kind == background.kind)
+      return {{"kind", std::string(name)}, {"color", encode(background.color)}, {"file", background.file}};
+  return nullptr;
 }
 template <typename T>
 Json encode(const T& value) {
@@ -116,6 +128,19 @@ void decode(const Json& json, CameraDescription& camera) {
   size_t i = 0;
   for (Vec3f* column : {&t.x, &t.y, &t.z, &t.origin}) decode(columns.at(i++), *column);
 }
+void decode(const Json& json, Background& background) {
+  const auto kind = json.at("kind").get<std::string>();
+  const auto found = std::find_if(background_kinds.begin(), background_kinds.end(),
+                                  [&](const auto& entry) { return entry.first == kind; });
+  if (found == background_kinds.end()) {
+    std::vector<std::string> names;
+    for (const auto& entry : background_kinds) names.emplace_back(entry.first);
+    throw_unknown_name("background", kind, names);
+  }
+  background.kind = found->second;
+  decode(json.at("color"), background.color);
+  background.file = json.at("file").get<std::string>();
+}
 template <typename T>
 void decode(const Json& json, T& value) {
   value = json.get<T>();
@@ -136,9 +161,25 @@ template <typename T>
 std::string text(const T& value) {
   return fmt::format("{}", value);
 }
+std::string text(const Background& background) { return background_text(background); }
 std::string text(const Crop& crop) { return crop.width > 0 ? crop_text(crop) : "none"; }
 
 }  // namespace
+
+std::string background_text(const Background& background) {
+  const Rgb& color = background.color;
+  switch (background.kind) {
+    case Background::Kind::surroundings:
+      return "surroundings";
+    case Background::Kind::transparent:
+      return "transparent";
+    case Background::Kind::color:
+      return fmt::format("{:g},{:g},{:g}", color.x, color.y, color.z);
+    case Background::Kind::picture:
+      return background.file;
+  }
+  return "";
+}
 
 std::string crop_text(const Crop& crop) {
   return fmt::format("{}x{}+{}+{}", crop.width, crop.height, crop.x, crop.y);

@@ -16,6 +16,9 @@ using RenderIdentity = std::vector<std::pair<std::string, std::string>>;
 /// All but the limits.
 RenderIdentity identity_of(const RenderSettings& settings);
 
+/// "surroundings", "transparent", "0.5,0.5,0.5" or a file.
+std::string background_text(const Background& background);
+
 /// "640x360+10+20", as --crop takes it.
 std::string crop_text(const Crop& crop);
 

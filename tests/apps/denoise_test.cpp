@@ -66,7 +66,8 @@ TEST_F(DenoiseCommand, EveryFilterLowersTheErrorAndSaysSo) {
 }
 
 TEST_F(DenoiseCommand, RenderDoesTheSame) {
-  const ProcessResult plain = render("noisy.exr", {"--spp", "8", "--aov", "error,half,albedo,normal"});
+  const ProcessResult plain =
+      render("noisy.exr", {"--spp", "8", "--aov", "error,half,albedo,normal,coverage"});
   const ProcessResult result = render("a.exr", {"--spp", "8", "--denoise", "nlm", "-o", folder_.file("a.png"),
                                                 "--stats", folder_.file("s.json")});
   ASSERT_EQ(result.exit_code, 0) << result.err;

@@ -281,5 +281,39 @@ TEST(ErrorEstimate, IsNotKnownWhileAPixelLacksSamples) {
   EXPECT_GE(estimate.unreliable, 0.5);
 }
 
+// Nine tenths of plain background make the figure of what stands before it no smaller.
+TEST(ErrorEstimate, IsThatOfThePixelsThatShowASurface) {
+  test::Random random(3);
+  Film marked(side, side), unmarked(side, side);
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x)
+      for (int i = 0; i < 32; ++i) {
+        const bool is_object = x < 10 && y < 10;
+        const auto value = float(is_object ? calm.sample(x, y, i / 2, 16, random) : 0.7);
+        ASSERT_TRUE(marked.add(x, y, i % 2, FilmSample{{value, value, value}, 0, is_object}));
+        ASSERT_TRUE(unmarked.add(x, y, i % 2, {value, value, value}));
+      }
+  const ErrorEstimate object = estimate_error(marked), picture = estimate_error(unmarked);
+  const double part = 100.0 / (side * side);
+  EXPECT_NEAR(object.rel_rmse * std::sqrt(part), picture.rel_rmse, 1e-9);
+  EXPECT_NEAR(object.unreliable * part, picture.unreliable, 0.01);
+  EXPECT_LT(object.low, object.rel_rmse);
+  EXPECT_GT(object.high, object.rel_rmse);
+}
+
+// Where nothing else is there to be seen, the background is what the picture is of.
+TEST(ErrorEstimate, OfAPictureWithoutSurfacesIsThatOfAllPixels) {
+  test::Random random(4);
+  Film sky(side, side), wall(side, side);
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x)
+      for (int i = 0; i < 32; ++i) {
+        const auto value = float(calm.sample(x, y, i / 2, 16, random));
+        ASSERT_TRUE(sky.add(x, y, i % 2, FilmSample{{value, value, value}, 0, false}));
+        ASSERT_TRUE(wall.add(x, y, i % 2, {value, value, value}));
+      }
+  EXPECT_EQ(estimate_error(sky).rel_rmse, estimate_error(wall).rel_rmse);
+}
+
 }  // namespace
 }  // namespace vernier

@@ -129,5 +129,34 @@ TEST(Film, SumsInDouble) {
   EXPECT_DOUBLE_EQ(film.half_mean(0, 0, 0).x, (1e8 + count) / (count + 1));
 }
 
+TEST(Film, AlphaIsWhatHidesTheBackground) {
+  Film film(2, 1, true);
+  EXPECT_EQ(film.alpha(0, 0), 0) << "without samples";
+  ASSERT_TRUE(film.add(0, 0, 0, FilmSample{{1, 1, 1}, 0.5f}));
+  EXPECT_EQ(film.alpha(0, 0), 0.5);
+  ASSERT_TRUE(film.add(0, 0, 1, FilmSample{{1, 1, 1}, 0.25f}));
+  ASSERT_TRUE(film.add(0, 0, 1, FilmSample{{1, 1, 1}, 0}));
+  // As of the colours, the mean of the halves' means.
+  EXPECT_EQ(film.alpha(0, 0), 1 - (0.5 + 0.125) / 2);
+  EXPECT_FALSE(film.add(0, 0, 0, FilmSample{{1, 1, 1}, std::nanf("")}));
+  EXPECT_FALSE(film.add(0, 0, 0, FilmSample{{1, 1, 1}, -0.1f}));
+  EXPECT_EQ(film.samples(0, 0), 3);
+  Film more(2, 1, true);
+  ASSERT_TRUE(more.add(0, 0, 0, FilmSample{{1, 1, 1}, 1}));
+  film.merge(more);
+  EXPECT_EQ(film.alpha(0, 0), 1 - (0.75 + 0.125) / 2);
+  EXPECT_EQ(Film(1, 1).alpha(0, 0), 1) << "without alpha";
+}
+
+TEST(Film, IsCoveredWhereAnySampleMetASurface) {
+  Film film(2, 1), more(2, 1);
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(film.add(0, 0, i % 2, FilmSample{{1, 1, 1}, 0, i == 3}));
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(film.add(1, 0, i % 2, FilmSample{{1, 1, 1}, 0, false}));
+  EXPECT_EQ(film.coverage().values, (std::vector<float>{1, 0}));
+  ASSERT_TRUE(more.add(1, 0, 0, {1, 1, 1}));
+  film.merge(more);
+  EXPECT_EQ(film.coverage().values, (std::vector<float>{1, 1}));
+}
+
 }  // namespace
 }  // namespace vernier

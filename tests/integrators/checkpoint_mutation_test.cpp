@@ -13,6 +13,7 @@
 #include <random>
 
 #include "core/base/fingerprint.h"
+#include "integrators/render/backdrop.h"
 #include "integrators/render/checkpoint.h"
 #include "scene/camera.h"
 #include "tests/support/temporary_folder.h"
@@ -50,7 +51,7 @@ struct Parts {
     }
     if (text.empty()) text = header.dump();
     std::string file = "VERNCKPT";
-    for (const uint32_t number : {2u, uint32_t(text.size())})
+    for (const uint32_t number : {3u, uint32_t(text.size())})
       file.append(reinterpret_cast<const char*>(&number), sizeof(number));
     file += fingerprint(std::as_bytes(std::span(text))) + text;
     for (const std::string& array : arrays) file += array;
@@ -79,9 +80,9 @@ class CheckpointMutation : public testing::Test {
     const std::string path = folder_.write("mutant.ckpt", bytes);
     try {
       Checkpoint checkpoint = read_checkpoint(path);
-      if (!go_on || !checkpoint.state->fits(options_.width, options_.height, true)) return {};
+      if (!go_on || !checkpoint.state->fits(options_.width, options_.height, true, false)) return {};
       options_.limits.spp = 49;  // through the end of the pass and a planning
-      render({scene_, *camera_, *integrator_, options_}, *checkpoint.state, stop_);
+      render({scene_, *camera_, *integrator_, options_, Backdrop(options_)}, *checkpoint.state, stop_);
       return {};
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::input);
@@ -204,7 +205,7 @@ TEST_F(CheckpointMutation, HostileArrays) {
 
 TEST_F(CheckpointMutation, PartsBeyondThePassNeverComeToAnEnd) {
   Parts parts(bytes_);
-  std::memset(parts.arrays[6].data(), 0x7f, 4);
+  std::memset(parts.arrays[7].data(), 0x7f, 4);
   EXPECT_THAT(outcome(parts.join(), true), HasSubstr("'parts' holds values that no render has"));
 }
 
@@ -216,8 +217,8 @@ TEST_F(CheckpointMutation, AHugePassIsRefused) {
 
 TEST_F(CheckpointMutation, SizesThatWrapAreRefused) {
   Parts parts(bytes_);
-  parts.header["arrays"][7]["bytes"] = std::numeric_limits<uint64_t>::max() - 95;
-  parts.header["arrays"][0]["bytes"] = parts.arrays[0].size() + parts.arrays[7].size() + 96;
+  parts.header["arrays"][8]["bytes"] = std::numeric_limits<uint64_t>::max() - 95;
+  parts.header["arrays"][0]["bytes"] = parts.arrays[0].size() + parts.arrays[8].size() + 96;
   EXPECT_THAT(outcome(parts.join(), false), HasSubstr("is damaged"));
 }
 
@@ -239,12 +240,12 @@ TEST_F(CheckpointMutation, NothingIsAllocatedForWhatIsNotThere) {
   const uint64_t pixels = uint64_t{60000} * 60000;
   parts.header["width"] = parts.header["height"] = 60000;
   set(0, pixels * 112);
-  set(1, pixels * 28);
   set(2, pixels * 28);
-  set(3, pixels * 8);
-  set(4, uint64_t{3750} * 3750 * 40);
-  set(5, pixels * 4);
-  set(6, uint64_t{3750} * 3750 * 4);
+  set(3, pixels * 28);
+  set(4, pixels * 8);
+  set(5, uint64_t{3750} * 3750 * 40);
+  set(6, pixels * 4);
+  set(7, uint64_t{3750} * 3750 * 4);
   for (std::string& array : parts.arrays) array.clear();
   const std::string file = parts.join();
   rlimit before{};

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "core/base/parallel.h"
+#include "integrators/render/backdrop.h"
 #include "integrators/render/checkpoint.h"
 #include "scene/camera.h"
 #include "tests/support/temporary_folder.h"
@@ -43,7 +44,7 @@ class Resume : public testing::Test {
   RenderResult go_on(const RenderState& state) {
     RenderState further = state;
     stop_ = false;
-    vernier::render({scene_, *camera_, *integrator_, options_}, further, stop_);
+    vernier::render({scene_, *camera_, *integrator_, options_, Backdrop(options_)}, further, stop_);
     return std::move(further.so_far);
   }
   /// The state at the end of a render.
@@ -223,7 +224,7 @@ TEST_F(CheckpointFile, BytesPerPixelAreThoseOfTheState) {
   // Beside them there are header, parts and looks.
   constexpr double rest = 2500.0 / (36 * 20);
   for (const bool adaptive : {true, false}) {
-    const auto expected = double(RenderState::bytes_per_pixel(adaptive));
+    const auto expected = double(RenderState::bytes_per_pixel(adaptive, false));
     const double stored = bytes_of(adaptive);
     EXPECT_GT(stored, expected);
     EXPECT_LT(stored, expected + rest);
@@ -246,7 +247,7 @@ TEST_F(CheckpointFile, DamageIsFound) {
               HasSubstr("is not a checkpoint"));
   std::string newer = bytes;
   newer[8] = 9;
-  EXPECT_THAT(complaint(newer), HasSubstr("format 9; this version reads format 2"));
+  EXPECT_THAT(complaint(newer), HasSubstr("format 9; this version reads format 3"));
 }
 
 TEST_F(CheckpointFile, CannotBeReadOrWritten) {

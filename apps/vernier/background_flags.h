@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "vernier/settings.h"
+
+namespace vernier::apps {
+
+/// --transparent, --background and --ground, as typed.
+struct BackgroundFlags {
+  bool transparent = false;
+  std::string background;  ///< colour or file; empty: not given
+  std::string ground = "none";
+
+  /// The file to be read for it, if any.
+  std::string file() const;
+};
+
+/// Declares the flags on `command`.
+void add_background_flags(CLI::App& command, BackgroundFlags& flags);
+
+/// What they ask for, with a picture that can be read, for outputs that can hold it. Throws Error.
+Background choose_background(const BackgroundFlags& flags, const std::vector<std::string>& outputs);
+
+}  // namespace vernier::apps
