@@ -205,7 +205,8 @@ size_t denoise_bytes_per_pixel() {
   constexpr size_t guided = 1 + 1 + 2 + 1;     // color, variance, features and modulation of a GuidedImage
   constexpr size_t filtering = 1 + 1 + 2 + 1;  // its color, variance and features as planes, and the result
   constexpr size_t filtered = 1;               // the other half
-  return (given + guided + filtering + filtered) * image;
+  constexpr size_t coverage = 3 + 1;           // channels: of each NoisyImage, and which pixels count
+  return (given + guided + filtering + filtered) * image + coverage * sizeof(float);
 }
 
 const Denoiser& find_denoiser(std::string_view name) {

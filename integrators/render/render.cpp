@@ -238,15 +238,14 @@ class Renderer {
       totals.bad_sample_examples.push_back({full_x, full_y, half, index});
     } else if (guides) {
       totals.light.add(estimate);
-      if (options_.adaptive) state_.guides[size_t(half)].add(x, y, seen.radiance, seen.met_surface);
+      if (options_.adaptive) state_.guides[size_t(half)].add(x, y, seen.radiance);
     }
   }
 
-  /// What a half knows of a pixel. It must not depend on extra samples, whose number depends on the other
-  /// half.
-  float known(int x, int y, int half) {
-    if (options_.adaptive) return max_component(state_.guides[size_t(half)].mean(x, y));
-    return max_component(Rgb(result().film.half_mean(x, y, half)));
+  /// What a half knows of a pixel: not by extra samples, whose number depends on the other half. Without
+  /// guides it is nothing, and then no sample depends on what lies behind the scene.
+  float known(int x, int y, int half) const {
+    return options_.adaptive ? max_component(state_.guides[size_t(half)].mean(x, y)) : 0;
   }
 
   /// Index of the next sample of its kind, which goes on even where the film rejects one.

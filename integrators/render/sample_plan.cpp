@@ -86,7 +86,7 @@ class HalfPlan {
 }  // namespace
 
 float SampleGuide::squared_need(const Cell& cell) {
-  if (cell.count < 2 || !cell.met_surface) return 0;
+  if (cell.count < 2) return 0;
   const auto n = float(cell.count);
   float relative = 0;
   for (int c = 0; c < 3; ++c) {

@@ -48,12 +48,11 @@ class SampleGuide {
   int width() const { return width_; }
 
   /// One thread at a time may add to a given pixel.
-  void add(int x, int y, const Rgb& radiance, bool met_surface = true) {
+  void add(int x, int y, const Rgb& radiance) {
     Cell& cell = cells_[size_t(y) * width_ + x];
     cell.sum += radiance;
     cell.sum_of_squares += radiance * radiance;
     ++cell.count;
-    cell.met_surface |= uint32_t(met_surface);
   }
 
   /// Mean of the samples of a pixel; zero where there are none.
@@ -64,8 +63,7 @@ class SampleGuide {
 
   /// How strongly the image's relative error depends on each pixel's number of samples: the spread of a
   /// single sample over sqrt(r^2 + 0.01), root mean square over 3 x 3 pixels, since one pixel's own figure is
-  /// too noisy to act on and a neighbour's surprise is a warning. Pixels that have met no surface need none
-  /// of their own: they do not count in the image's error.
+  /// too noisy to act on and a neighbour's surprise is a warning.
   std::vector<float> needs() const;
 
   /// All that is known, to be stored and read back on the same kind of machine.
@@ -79,8 +77,7 @@ class SampleGuide {
   struct Cell {
     Rgb sum{0, 0, 0};
     Rgb sum_of_squares{0, 0, 0};
-    uint32_t count : 31 = 0;
-    uint32_t met_surface : 1 = 0;
+    uint32_t count = 0;
   };
   static float squared_need(const Cell& cell);
 

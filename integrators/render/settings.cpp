@@ -81,10 +81,9 @@ Json encode(const CameraDescription& camera) {
           {"to_world", {encode(t.x), encode(t.y), encode(t.z), encode(t.origin)}}};
 }
 Json encode(const Background& background) {
-  for (const auto& [name, kind] : background_kinds)
-    if (kind == background.kind)
-      return {{"kind", std::string(name)}, {"color", encode(background.color)}, {"file", background.file}};
-  return nullptr;
+  return {{"kind", name_of(background_kinds, background.kind)},
+          {"color", encode(background.color)},
+          {"file", background.file}};
 }
 template <typename T>
 Json encode(const T& value) {
@@ -129,15 +128,7 @@ void decode(const Json& json, CameraDescription& camera) {
   for (Vec3f* column : {&t.x, &t.y, &t.z, &t.origin}) decode(columns.at(i++), *column);
 }
 void decode(const Json& json, Background& background) {
-  const auto kind = json.at("kind").get<std::string>();
-  const auto found = std::find_if(background_kinds.begin(), background_kinds.end(),
-                                  [&](const auto& entry) { return entry.first == kind; });
-  if (found == background_kinds.end()) {
-    std::vector<std::string> names;
-    for (const auto& entry : background_kinds) names.emplace_back(entry.first);
-    throw_unknown_name("background", kind, names);
-  }
-  background.kind = found->second;
+  decode_name(json.at("kind"), "background", background_kinds, background.kind);
   decode(json.at("color"), background.color);
   background.file = json.at("file").get<std::string>();
 }
