@@ -118,11 +118,13 @@ void note_fitting(const CameraFlags& flags, const Subject& subject, NoticeLog& l
     log.add({Notice::Severity::info,
              {},
              "the scene has no camera; using one fitted to it, --azimuth and --elevation go around it"});
-  if (subject.left_out() > 0)
+  const size_t grounds = flags.has_ground ? 1 : 0;
+  if (subject.left_out() > grounds)
     log.add({Notice::Severity::info,
              {},
              fmt::format("the camera is fitted without {} far larger {}; --look-from and --look-at see more",
-                         subject.left_out(), subject.left_out() == 1 ? "object" : "objects")});
+                         subject.left_out() - grounds,
+                         subject.left_out() - grounds == 1 ? "object" : "objects")});
 }
 
 }  // namespace

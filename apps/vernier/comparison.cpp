@@ -63,14 +63,6 @@ struct MeasuredFile {
   }
 };
 
-/// None where the picture is opaque everywhere.
-std::optional<Image> alpha_of(const LayeredImage& picture) {
-  auto alpha = picture.single("A");
-  const auto is_opaque = [](float value) { return value == 1; };
-  if (alpha && std::all_of(alpha->values.begin(), alpha->values.end(), is_opaque)) alpha.reset();
-  return alpha;
-}
-
 /// One channel, 0 where neither picture shows a surface; none when neither tells.
 std::optional<Image> shown_pixels(const LayeredImage& x, const LayeredImage& r) {
   auto shown = coverage_of(x);

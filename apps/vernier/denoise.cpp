@@ -43,7 +43,7 @@ ExitCode run_denoise(const DenoiseFlags& flags, const std::string& command_line)
   if (!noisy.linear)
     throw Error(ErrorKind::input, flags.input, {},
                 "holds display values; expected scene-linear ones, as in .exr");
-  if (noisy.single("A")) require_alpha_fits(flags.output);
+  require_alpha_fits(noisy, flags.output);
   const Denoised denoised = denoise(noisy, denoiser);
   LayeredImage picture = color_and_reliability(noisy);
   put_into(picture, denoised);

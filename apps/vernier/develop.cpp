@@ -94,8 +94,7 @@ ExitCode run_develop(const DevelopFlags& flags, const std::string& command_line)
   }
   picture = color_and_alpha(picture);
   if (!flags.background.empty()) put_behind(picture, flags);
-  if (picture.image.channels > 3)
-    for (const auto& output : flags.outputs) require_alpha_fits(output);
+  for (const auto& output : flags.outputs) require_alpha_fits(picture, output);
 
   Outputs outputs;
   for (const auto& output : flags.outputs) {

@@ -30,8 +30,12 @@ void write_to_standard_output(std::span<const unsigned char> bytes) {
 
 }  // namespace
 
+std::string named_output(const std::string& output, const std::string& format) {
+  return is_standard_stream(output) ? "-." + format_or_default(format) : output;
+}
+
 bool is_display_output(const std::string& output, const std::string& format) {
-  return is_standard_stream(output) ? format_or_default(format) != "exr" : is_display_file(output);
+  return is_display_file(named_output(output, format));
 }
 
 void check_output(const std::string& output, bool folder_is_made) {

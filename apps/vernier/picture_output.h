@@ -16,6 +16,9 @@ inline bool is_standard_stream(const std::string& file) { return file == "-"; }
 /// What the header of a picture that is still on its way says it was stopped by.
 inline constexpr const char* unfinished = "unfinished";
 
+/// The output by a name that tells its format. `format` as in RunFlags.
+std::string named_output(const std::string& output, const std::string& format);
+
 /// Whether an output holds display values (PNG, JPEG) rather than scene-linear ones (EXR). `format` as in
 /// RunFlags.
 bool is_display_output(const std::string& output, const std::string& format);

@@ -33,11 +33,13 @@ PosedScene::PosedScene(const RenderFlags& flags, const RunPlan& plan, SceneDescr
   report_.scene_hash = description.hash;
   report_.counts = count(description);
   const auto& cameras = description.cameras;
-  if (plan.all_cameras && !cameras.empty())
-    chosen_ = all_cameras(cameras, log);
-  else
+  if (!plan.all_cameras)
     chosen_ = {{choose_camera(cameras, flags.camera, log), ""}};
-  if (flags.background.ground == "matte") add_ground(description);
+  else if (cameras.empty())
+    chosen_ = {{std::nullopt, ""}};  // one that is fitted stands for all that there are
+  else
+    chosen_ = all_cameras(cameras, log);
+  if (flags.camera.has_ground) add_ground(description);
   Stopwatch watch;
   scene_ = build_scene(std::move(description), {flags.accelerator});
   report_.build_seconds = watch.lap();

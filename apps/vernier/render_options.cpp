@@ -117,8 +117,7 @@ void check_standard_output(const RenderFlags& flags) {
 /// Outputs by names that tell their format.
 std::vector<std::string> named_outputs(const RenderFlags& flags) {
   std::vector<std::string> names = flags.outputs;
-  for (std::string& name : names)
-    if (is_standard_stream(name)) name += "." + (flags.run.format.empty() ? "png" : flags.run.format);
+  for (std::string& name : names) name = named_output(name, flags.run.format);
   return names;
 }
 
@@ -166,6 +165,7 @@ RenderRequest check_render_flags(const RenderFlags& given) {
   RenderRequest request;
   request.flags = with_draft(given);
   const RenderFlags& flags = request.flags;
+  request.flags.camera.has_ground = flags.background.ground == "matte";
   request.flags.camera.turns = flags.run.turntable.has_value();
   if (!flags.accelerator.empty()) find_by_name(accelerators(), "accelerator", flags.accelerator);
   request.settings = make_settings(flags);

@@ -136,6 +136,8 @@ RunPlan make_plan(const RenderFlags& flags) {
   plan.variants = {flags.import.variant};
   plan.all_cameras = flags.camera.camera == all;
   if (flags.run.turntable) {
+    if (flags.camera.panorama)
+      throw Error(ErrorKind::usage, "--panorama sees all around already; drop it or --turntable");
     plan.sides = turntable_sides(flags.run);
     plan.sides_around = *flags.run.turntable;
   } else if (!flags.run.frames.empty()) {

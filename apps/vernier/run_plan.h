@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,11 +27,6 @@ struct RunPlan {
   std::vector<std::optional<int>> sides{std::nullopt};  ///< pictures of a turntable; one without: none
   int sides_around = 1;                                 ///< pictures of a whole turn
   FilePatterns files;
-
-  /// Variants and cameras of a scene are known once it is read; then `whole` is not.
-  size_t pictures_of_scene(size_t variants_in_it, size_t cameras_in_it) const {
-    return variants_in_it * times.size() * cameras_in_it * sides.size();
-  }
 };
 
 /// Throws Error(usage) when the flags contradict each other, when a placeholder has nothing to stand for, and

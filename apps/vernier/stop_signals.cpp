@@ -23,6 +23,13 @@ void request_stop(int signal) {
 
 void request_write(int) { write_requested = true; }
 
+using Handle = void (*)(int);
+/// What came before is not for whom `handle` is installed now.
+Handle forgetting(std::atomic<bool>& requested, Handle handle) {
+  requested = false;
+  return handle;
+}
+
 void install(int signal, void (*handler)(int), struct sigaction& old) {
   struct sigaction action {};
   action.sa_handler = handler;
@@ -40,29 +47,17 @@ void install_cleanup_signals() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-StopSignals::StopSignals() {
-  stop_requested = false;
-  install(SIGINT, request_stop, old_interrupt_);
-  install(SIGTERM, request_stop, old_terminate_);
-}
+SignalHandler::SignalHandler(int signal, Handle handle) : signal_(signal) { install(signal, handle, old_); }
 
-StopSignals::~StopSignals() {
-  sigaction(SIGINT, &old_interrupt_, nullptr);
-  sigaction(SIGTERM, &old_terminate_, nullptr);
-}
+SignalHandler::~SignalHandler() { sigaction(signal_, &old_, nullptr); }
+
+StopSignals::StopSignals()
+    : interrupt_(SIGINT, forgetting(stop_requested, request_stop)), terminate_(SIGTERM, request_stop) {}
 
 const std::atomic<bool>& StopSignals::stop() const { return stop_requested; }
 
-WriteSignals::WriteSignals() {
-  write_requested = false;
-  install(SIGHUP, request_write, old_hang_up_);
-  install(SIGUSR1, request_write, old_user_);
-}
-
-WriteSignals::~WriteSignals() {
-  sigaction(SIGHUP, &old_hang_up_, nullptr);
-  sigaction(SIGUSR1, &old_user_, nullptr);
-}
+WriteSignals::WriteSignals()
+    : hang_up_(SIGHUP, forgetting(write_requested, request_write)), user_(SIGUSR1, request_write) {}
 
 std::atomic<bool>& WriteSignals::now() const { return write_requested; }
 

@@ -10,21 +10,29 @@ namespace vernier::apps {
 /// past a limit on the size of files is an error instead of its end. A signal that is ignored stays so.
 void install_cleanup_signals();
 
-/// While it lives, the first SIGINT or SIGTERM only raises a flag; a second one ends the process at
-/// once, half-written files removed. A signal that was ignored at the start (as in background jobs of a shell
-/// script) stays ignored.
+/// While it lives, `handle` is called for a signal. A signal that was ignored at the start (as in background
+/// jobs of a shell script) stays ignored.
+class SignalHandler {
+ public:
+  SignalHandler(int signal, void (*handle)(int));
+  ~SignalHandler();
+  SignalHandler(const SignalHandler&) = delete;
+  SignalHandler& operator=(const SignalHandler&) = delete;
+
+ private:
+  int signal_;
+  struct sigaction old_ {};
+};
+
+/// While it lives, the first SIGINT or SIGTERM only raises a flag; a second one ends the process at once,
+/// half-written files removed.
 class StopSignals {
  public:
   StopSignals();
-  ~StopSignals();
-  StopSignals(const StopSignals&) = delete;
-  StopSignals& operator=(const StopSignals&) = delete;
-
   const std::atomic<bool>& stop() const;
 
  private:
-  struct sigaction old_interrupt_ {};
-  struct sigaction old_terminate_ {};
+  SignalHandler interrupt_, terminate_;
 };
 
 /// While it lives, SIGUSR1 and SIGHUP, which comes when a terminal goes away, ask for the picture so far to
@@ -32,16 +40,11 @@ class StopSignals {
 class WriteSignals {
  public:
   WriteSignals();
-  ~WriteSignals();
-  WriteSignals(const WriteSignals&) = delete;
-  WriteSignals& operator=(const WriteSignals&) = delete;
-
   /// For RenderSession::on_preview().
   std::atomic<bool>& now() const;
 
  private:
-  struct sigaction old_hang_up_ {};
-  struct sigaction old_user_ {};
+  SignalHandler hang_up_, user_;
 };
 
 }  // namespace vernier::apps

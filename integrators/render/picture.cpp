@@ -19,6 +19,24 @@ void add_display(Metadata& metadata, const DisplayOptions& display) {
   metadata["vernier:view"] = display.view;
 }
 
+std::string extension_of(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  return extension;
+}
+
+bool holds_alpha(const std::string& path) {
+  const std::string extension = extension_of(path);
+  return extension == ".exr" || extension == ".png";
+}
+
+/// What a display file of that name shows.
+Image8 displayed(const std::string& path, const LayeredImage& picture, const DisplayOptions& display) {
+  require_alpha_fits(picture, path);
+  return to_display(holds_alpha(path) ? color_and_alpha(picture).image : picture.rgb(), display);
+}
+
 }  // namespace
 
 double samples_per_pixel(const RenderResult& result) {
@@ -39,25 +57,24 @@ Metadata result_metadata(const RenderResult& result) {
   return metadata;
 }
 
-namespace {
-
-std::string extension_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
-  return extension;
-}
-
-}  // namespace
-
 bool is_display_file(const std::string& path) { return extension_of(path) != ".exr"; }
 
 void require_alpha_fits(const std::string& path) {
-  const std::string extension = extension_of(path);
-  if (extension != ".exr" && extension != ".png")
+  if (!holds_alpha(path))
     throw Error(ErrorKind::usage, path, {},
                 "this kind of file has no alpha, and the picture is transparent; use .png or .exr, or "
                 "'render' or 'develop' with --background");
+}
+
+void require_alpha_fits(const LayeredImage& picture, const std::string& path) {
+  if (alpha_of(picture)) require_alpha_fits(path);
+}
+
+std::optional<Image> alpha_of(const LayeredImage& picture) {
+  auto alpha = picture.single("A");
+  const auto is_opaque = [](float value) { return value == 1; };
+  if (alpha && std::all_of(alpha->values.begin(), alpha->values.end(), is_opaque)) alpha.reset();
+  return alpha;
 }
 
 LayeredImage color_and_alpha(const LayeredImage& picture) {
@@ -68,7 +85,7 @@ LayeredImage color_and_alpha(const LayeredImage& picture) {
 
 std::optional<Image> coverage_of(const LayeredImage& picture) {
   auto coverage = picture.single("coverage");
-  return coverage ? coverage : picture.single("A");
+  return coverage ? coverage : alpha_of(picture);
 }
 
 void write_picture(const std::string& path, const LayeredImage& picture, Metadata metadata,
@@ -78,16 +95,14 @@ void write_picture(const std::string& path, const LayeredImage& picture, Metadat
     return;
   }
   add_display(metadata, display);
-  const LayeredImage shown = color_and_alpha(picture);
-  if (shown.image.channels > 3) require_alpha_fits(path);
-  write_image8(path, to_display(shown.image, display), metadata);
+  write_image8(path, displayed(path, picture, display), metadata);
 }
 
 std::vector<unsigned char> encode_picture(const std::string& format, const LayeredImage& picture,
                                           Metadata metadata, const DisplayOptions& display) {
   if (format == "exr") return encode_exr(picture.image, picture.channel_names, metadata);
   add_display(metadata, display);
-  return encode_image8(format, to_display(color_and_alpha(picture).image, display), metadata);
+  return encode_image8(format, displayed("picture." + format, picture, display), metadata);
 }
 
 }  // namespace vernier

@@ -22,12 +22,13 @@ Metadata result_metadata(const RenderResult& result);
 /// Whether a file is written as display values (PNG, JPEG) rather than scene-linear ones (EXR). By extension.
 bool is_display_file(const std::string& path);
 
-/// The bytes of a file of that format, "exr", "png" or "jpg", as write_picture() makes it.
-std::vector<unsigned char> encode_picture(const std::string& format, const LayeredImage& picture,
-                                          Metadata metadata, const DisplayOptions& display);
-
 /// Throws Error(usage) unless a file of that kind, by its extension, holds alpha.
 void require_alpha_fits(const std::string& path);
+/// The same, if the picture is not opaque.
+void require_alpha_fits(const LayeredImage& picture, const std::string& path);
+
+/// One channel; empty where the picture is opaque, which other programs' alpha often says.
+std::optional<Image> alpha_of(const LayeredImage& picture);
 
 /// R, G and B, and A if it has one, without layers and texts.
 LayeredImage color_and_alpha(const LayeredImage& picture);
@@ -41,5 +42,8 @@ std::optional<Image> coverage_of(const LayeredImage& picture);
 /// Error(output), and Error(usage) as require_alpha_fits().
 void write_picture(const std::string& path, const LayeredImage& picture, Metadata metadata,
                    const DisplayOptions& display);
+/// The bytes of such a file; `format` is "exr", "png" or "jpg".
+std::vector<unsigned char> encode_picture(const std::string& format, const LayeredImage& picture,
+                                          Metadata metadata, const DisplayOptions& display);
 
 }  // namespace vernier

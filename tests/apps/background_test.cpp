@@ -29,12 +29,14 @@ class BackgroundFlags : public testing::Test {
   static void must(const ProcessResult& result) { ASSERT_EQ(result.exit_code, 0) << result.err; }
 
   const TemporaryFolder folder_;
-  /// A triangle that glows white, in surroundings of its own making.
+  /// A triangle that glows white and reflects nothing.
   const std::string scene_ = folder_.write("triangle.gltf", R"({"asset": {"version": "2.0"}, "scene": 0,
     "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
     "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+    "extensionsUsed": ["KHR_materials_specular"],
     "materials": [{"emissiveFactor": [1, 1, 1], "doubleSided": true,
-                   "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 1}}],
+                   "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0},
+                   "extensions": {"KHR_materials_specular": {"specularFactor": 0}}}],
     "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
                    "max": [1, 1, 0]}],
     "bufferViews": [{"buffer": 0, "byteLength": 36}],
@@ -53,8 +55,7 @@ TEST_F(BackgroundFlags, AlphaIsAssociatedInOpenExrAndStraightInPng) {
       const float* linear = exr.image.pixel(x, y);
       const float* shown = png.image.pixel(x, y);
       EXPECT_NEAR(shown[3], linear[3], 0.003);
-      // Even black metal mirrors a little of the sky.
-      EXPECT_NEAR(linear[0], linear[3], 5e-3) << "a radiance of 1 times alpha";
+      EXPECT_NEAR(linear[0], linear[3], 1e-6) << "a radiance of 1 times alpha";
       if (linear[3] > 0) {
         EXPECT_EQ(shown[0], 1);
       }
@@ -132,6 +133,20 @@ TEST_F(BackgroundFlags, OtherCommandsKeepAlpha) {
               HasSubstr("has no alpha"));
 }
 
+// Other programs write alpha that is 1 everywhere.
+TEST_F(BackgroundFlags, AlphaThatHidesAllIsNoObstacle) {
+  Image picture(6, 4, 4);
+  std::fill(picture.values.begin(), picture.values.end(), 1.f);
+  write_exr(file("opaque.exr"), picture, {"R", "G", "B", "A"}, {});
+  for (const char* command : {"develop", "denoise"}) {
+    must(run_vernier({command, file("opaque.exr"), "-o", file("a.jpg")}));
+    EXPECT_EQ(read_layers(file("a.jpg")).channel_names.size(), 3u) << command;
+  }
+  picture.values.back() = 0.5f;
+  write_exr(file("clear.exr"), picture, {"R", "G", "B", "A"}, {});
+  EXPECT_EQ(run_vernier({"develop", file("clear.exr"), "-o", file("b.jpg")}).exit_code, 2);
+}
+
 TEST_F(BackgroundFlags, ComparisonsCountThePixelsThatShowSomething) {
   must(render({"--transparent", "-o", file("a.exr"), "--seed", "1"}));
   must(render({"--transparent", "-o", file("b.exr"), "--seed", "2"}));
@@ -175,6 +190,10 @@ TEST_F(BackgroundFlags, PlainBackgroundMakesNothingLookCleaner) {
   const double whole = error_of({}), part = error_of({"--crop", "16x12+8+6"});
   EXPECT_GT(part, 0.01);
   EXPECT_NEAR(whole, part, 0.02 * part);
+}
+
+TEST_F(BackgroundFlags, AGroundIsNotSaidToBeLeftOut) {
+  EXPECT_THAT(render({"--ground", "matte", "-o", file("a.exr")}).err, Not(HasSubstr("far larger")));
 }
 
 TEST_F(BackgroundFlags, AGroundIsASurface) {

@@ -98,6 +98,13 @@ TEST_F(Sequence, AllCamerasMakeAPictureEach) {
   EXPECT_EQ(bytes("c.2.exr"), bytes("single.exr"));
 }
 
+TEST_F(Sequence, AllCamerasOfASceneWithoutAnyAreOneThatIsFitted) {
+  make({scene_, "--camera", "all", "-o", folder_.file("c.{camera}.exr")});
+  EXPECT_THAT(names(".exr"), ElementsAre("c.fitted.exr"));
+  make({scene_, "-o", folder_.file("single.exr")});
+  EXPECT_EQ(bytes("c.fitted.exr"), bytes("single.exr"));
+}
+
 TEST_F(Sequence, AllVariantsMakeAPictureEach) {
   GltfFile file = animated_scene();
   const int blue = file.add("materials", {{"emissiveFactor", {0, 0, 1}}, {"doubleSided", true}});
@@ -234,6 +241,7 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{{"-o", "/f.png", "--fps", "25"}, "--fps needs --frames"},
         Misuse{{"-o", "/f.##.png", "--turntable", "4", "--fps", "25"}, "--fps means nothing to --turntable"},
         Misuse{{"-o", "/f.##.png", "--turntable", "4", "--frames", "0-4"}, "has pictures 1 to 4, not 0"},
+        Misuse{{"-o", "/f.##.png", "--turntable", "4", "--panorama"}, "sees all around already"},
         Misuse{{"-o", "/f.png", "--turntable", "0"}, "--turntable: '0' is not a whole number from 1"},
         Misuse{{"-o", "/f.png", "--format", "png"}, "--format needs -o -"},
         Misuse{{"-o", "-", "--format", "pgn"}, "did you mean 'png'?"},
