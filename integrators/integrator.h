@@ -46,10 +46,10 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// Block 0 of `sampler` belongs to the camera; the others are free. `known` is about how bright the pixel
-  /// is from other samples of it, in its brightest channel, 0 if unknown: what changes it little may be worth
-  /// less effort. The mean does not depend on it.
-  virtual Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler, float known) const = 0;
+  /// Block 0 of `sampler` belongs to the camera; the others are free. `spread` is about the standard
+  /// deviation of the pixel's samples in the channel where it is largest, 0 if unknown: noise far below it
+  /// is not worth much effort. The mean does not depend on it.
+  virtual Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler, float spread) const = 0;
 };
 
 /// One line of the table of integrators.

@@ -13,7 +13,8 @@ class PathIntegrator : public Integrator {
  public:
   explicit PathIntegrator(const IntegratorOptions& options) : options_(options) {}
 
-  Estimate estimate(const Scene& scene, const Ray& camera_ray, Sampler& sampler, float known) const override {
+  Estimate estimate(const Scene& scene, const Ray& camera_ray, Sampler& sampler,
+                    float spread) const override {
     Estimate out;
     Segment segment = camera_segment(scene, camera_ray);
     Rgb throughput = camera_response(scene, segment);
@@ -53,7 +54,7 @@ class PathIntegrator : public Integrator {
       if (options_.light_sampling != LightSampling::bsdf)
         if (const auto light = scene.sample_light(*hit, light_choice, light_point);
             light && !(looks_through && will_be_met(*light, surface)))
-          add_direct(out, {scene, *hit, surface, throughput, depth}, *light, {known, shadow_roulette});
+          add_direct(out, {scene, *hit, surface, throughput, depth}, *light, {spread, shadow_roulette});
       const auto next = surface.sample(lobe_choice, direction);
       if (!next) break;
       throughput *= next->weight;
@@ -91,9 +92,9 @@ class PathIntegrator : public Integrator {
     int depth;
   };
 
-  /// Russian roulette of shadow rays: what a pixel is known to have at least, and a random number.
+  /// Russian roulette of shadow rays: the spread of the pixel's samples, and a random number.
   struct ShadowRoulette {
-    float known;
+    float spread;
     float number;
   };
 
@@ -129,8 +130,7 @@ class PathIntegrator : public Integrator {
     const bool only_sampled = light.is_delta || options_.light_sampling == LightSampling::light;
     const float weight = only_sampled ? 1 : power_heuristic(light.pdf, scattered.pdf);
     Rgb radiance = vertex.throughput * light.radiance * scattered.f_cos * (weight / light.pdf);
-    const float survival =
-        shadow_survival_probability(radiance, std::max(roulette.known, max_component(out.radiance)));
+    const float survival = shadow_survival_probability(radiance, roulette.spread);
     if (roulette.number >= survival) return;
     ++out.rays.shadow;
     const Passage passage = transmittance(vertex.scene, vertex.at.spawn_to(light));
@@ -142,13 +142,13 @@ class PathIntegrator : public Integrator {
       out.missing.bent += radiance;
   }
 
-  /// Of a shadow ray that brings at most `radiance` to a pixel that has `known`. Those that can bring a
-  /// quarter of that or more are all traced. In a kitchen lit through its window a third of all shadow rays
-  /// are spared for half a percent more variance; the bound keeps the variance in bounds where an outlier is
-  /// what is known.
-  float shadow_survival_probability(const Rgb& radiance, float known) const {
-    return options_.russian_roulette && known > 0
-               ? std::clamp(4 * max_component(radiance) / known, 1 / 16.f, 1.f)
+  /// Of a shadow ray that brings at most `radiance` to a pixel whose samples spread anyway. What roulette
+  /// adds to their variance is bounded by what a ray brings; those that can bring a quarter of the spread or
+  /// more are all traced. In a kitchen lit through its window that spares a third of the shadow rays for one
+  /// percent more variance.
+  float shadow_survival_probability(const Rgb& radiance, float spread) const {
+    return options_.russian_roulette && spread > 0
+               ? std::clamp(4 * max_component(radiance) / spread, 1 / 16.f, 1.f)
                : 1;
   }
 

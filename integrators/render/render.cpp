@@ -228,7 +228,7 @@ class Renderer {
     const uint32_t index = draw_index(planned, guides);
     const int full_x = crop_.x + x, full_y = crop_.y + y;
     CameraSample sample = camera_samples_.get({full_x, full_y, half, index});
-    const Estimate estimate = integrator_.estimate(scene_, sample.ray, sample.sampler, known(x, y, half));
+    const Estimate estimate = integrator_.estimate(scene_, sample.ray, sample.sampler, spread(x, y, half));
     ++totals.samples;
     totals.rays += estimate.rays;
     const FilmSample seen = backdrop_.behind(estimate, full_x, full_y);
@@ -242,10 +242,10 @@ class Renderer {
     }
   }
 
-  /// What a half knows of a pixel: not by extra samples, whose number depends on the other half. Without
-  /// guides it is nothing, and then no sample depends on what lies behind the scene.
-  float known(int x, int y, int half) const {
-    return options_.adaptive ? max_component(state_.guides[size_t(half)].mean(x, y)) : 0;
+  /// Of a pixel's samples, as far as a half knows it: not by extra samples, whose number depends on the other
+  /// half. Without guides it is unknown, and then no sample depends on what lies behind the scene.
+  float spread(int x, int y, int half) const {
+    return options_.adaptive ? state_.guides[size_t(half)].spread(x, y) : 0;
   }
 
   /// Index of the next sample of its kind, which goes on even where the film rejects one.

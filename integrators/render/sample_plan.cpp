@@ -87,13 +87,9 @@ class HalfPlan {
 
 float SampleGuide::squared_need(const Cell& cell) {
   if (cell.count < 2) return 0;
-  const auto n = float(cell.count);
+  const Rgb mean = cell.sum / float(cell.count), squared = variance(cell);
   float relative = 0;
-  for (int c = 0; c < 3; ++c) {
-    const float mean = cell.sum[c] / n;
-    const float variance = std::max(0.f, cell.sum_of_squares[c] - cell.sum[c] * mean) / (n - 1);
-    relative += variance / (mean * mean + 0.01f);
-  }
+  for (int c = 0; c < 3; ++c) relative += std::max(0.f, squared[c]) / (mean[c] * mean[c] + 0.01f);
   return std::isfinite(relative) ? relative : 0;  // squares of very bright samples are beyond float
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -55,10 +57,10 @@ class SampleGuide {
     ++cell.count;
   }
 
-  /// Mean of the samples of a pixel; zero where there are none.
-  Rgb mean(int x, int y) const {
+  /// Standard deviation of a pixel's samples, in the channel where it is largest; 0 of fewer than two.
+  float spread(int x, int y) const {
     const Cell& cell = cells_[size_t(y) * width_ + x];
-    return cell.sum / float(std::max(1u, cell.count));
+    return cell.count < 2 ? 0 : std::sqrt(std::max(0.f, max_component(variance(cell))));
   }
 
   /// How strongly the image's relative error depends on each pixel's number of samples: the spread of a
@@ -79,6 +81,11 @@ class SampleGuide {
     Rgb sum_of_squares{0, 0, 0};
     uint32_t count = 0;
   };
+  /// Of a single sample, in each channel; needs two samples.
+  static Rgb variance(const Cell& cell) {
+    const auto n = float(cell.count);
+    return (cell.sum_of_squares - cell.sum * cell.sum / n) / (n - 1);
+  }
   static float squared_need(const Cell& cell);
 
   int width_, height_;

@@ -42,8 +42,8 @@ MeshDescription wall(float z) { return parallelogram({-1, -1, z}, {2, 0, 0}, {0,
 class OverWhite : public Integrator {
  public:
   explicit OverWhite(std::unique_ptr<Integrator> integrator) : integrator_(std::move(integrator)) {}
-  Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler, float known) const override {
-    Estimate estimate = integrator_->estimate(scene, ray, sampler, known);
+  Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler, float spread) const override {
+    Estimate estimate = integrator_->estimate(scene, ray, sampler, spread);
     estimate.radiance += estimate.background;
     return estimate;
   }
@@ -56,8 +56,8 @@ class OverWhite : public Integrator {
 class Transparency : public OverWhite {
  public:
   using OverWhite::OverWhite;
-  Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler, float known) const override {
-    const Estimate all = OverWhite::estimate(scene, ray, sampler, known);
+  Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler, float spread) const override {
+    const Estimate all = OverWhite::estimate(scene, ray, sampler, spread);
     Estimate estimate;
     estimate.radiance = all.background;
     return estimate;

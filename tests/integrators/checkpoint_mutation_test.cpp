@@ -26,7 +26,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using testing::HasSubstr;
 
-constexpr size_t preamble_size = 48, fingerprint_at = 16;
+constexpr size_t preamble_size = 48;
 
 /// A checkpoint taken apart, and put together with fingerprints that are right.
 struct Parts {

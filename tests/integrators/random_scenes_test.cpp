@@ -19,14 +19,13 @@ struct Technique {
   LightSampling sampling;
   bool roulette;
   const char* accelerator;
-  float known = 0;  ///< of the pixel
+  float spread = 0;  ///< of the pixel
 };
 constexpr Technique reference{"mis", LightSampling::mis, true, "bvh"};
-constexpr Technique others[] = {
-    {"light", LightSampling::light, true, "bvh"},
-    {"bsdf", LightSampling::bsdf, true, "bvh"},
-    {"mis without roulette", LightSampling::mis, false, "bvh"},
-    {"mis with embree in a bright pixel", LightSampling::mis, true, "embree", 10}};
+constexpr Technique others[] = {{"light", LightSampling::light, true, "bvh"},
+                                {"bsdf", LightSampling::bsdf, true, "bvh"},
+                                {"mis without roulette", LightSampling::mis, false, "bvh"},
+                                {"mis with embree in a noisy pixel", LightSampling::mis, true, "embree", 10}};
 
 /// Which surfaces with an alpha a ray meets is a matter of its bits: one ray many times is no mean.
 Ray shaken(Ray ray, const Vec2f& u) {
@@ -49,8 +48,8 @@ std::array<Samples, 3> radiance(const Scene& scene, const Technique& technique, 
     const auto count = uint32_t(samples * factor);
     for (uint32_t i = 0; i < count; ++i) {
       Sampler sampler(set, i, seed);
-      mean +=
-          Vec3d(integrator->estimate(scene, shaken(ray, sampler.next2()), sampler, technique.known).radiance);
+      mean += Vec3d(
+          integrator->estimate(scene, shaken(ray, sampler.next2()), sampler, technique.spread).radiance);
     }
     for (int c = 0; c < 3; ++c) result[size_t(c)].add(mean[c] / count);
   }

@@ -219,7 +219,8 @@ View sconces() {
   SceneBuilder builder;
   builder.add(box({-4, 0, -4}, {4, 3, 4}, true), grey(diffuse(1), 0.5f));
   for (int i = 0; i < 9; ++i) {
-    const Vec3f at(float(i % 3) * 2 - 2, 1.5f, float(i / 3) * 2 - 2);
+    const int column = i % 3, row = i / 3;
+    const Vec3f at(float(column) * 2 - 2, 1.5f, float(row) * 2 - 2);
     builder.add(lamp(Kind::spot, at, {0, 1, 0}, 3)).add(lamp(Kind::spot, at, {0.01f, -1, 0}, 3));
   }
   return {"sconces", builder.build(), ray_through({0.5f, 1, 3}, {0.2f, 0, 0.1f}), 3, 1e-2, true};
@@ -264,13 +265,13 @@ struct Technique {
   const char* name;
   LightSampling sampling;
   bool roulette;
-  float known = 0;  ///< of the pixel
+  float spread = 0;  ///< of the pixel
 };
 constexpr Technique techniques[] = {{"mis", LightSampling::mis, true},
                                     {"mis without roulette", LightSampling::mis, false},
                                     {"light", LightSampling::light, true},
                                     {"bsdf", LightSampling::bsdf, true},
-                                    {"mis in a bright pixel", LightSampling::mis, true, 10}};
+                                    {"mis in a noisy pixel", LightSampling::mis, true, 10}};
 
 // Welch's test on means of 32 independent stratified sets, family significance 0.001, with as many samples as
 // a bias of the view's resolution takes to be found nine times in ten.
@@ -284,7 +285,7 @@ TEST(Techniques, Agree) {
       options.max_depth = view.max_depth;
       options.light_sampling = technique.sampling;
       options.russian_roulette = technique.roulette;
-      return measure(view.scene, *path(options), view.ray, samples, 32, seed, technique.known);
+      return measure(view.scene, *path(options), view.ray, samples, 32, seed, technique.spread);
     };
     const double significance = sidak(1e-3, 64);
     const auto resolved = [&](const Technique& technique, uint64_t seed, uint64_t factor) {

@@ -145,12 +145,12 @@ std::unique_ptr<Integrator> path(const IntegratorOptions& options) {
 }
 
 Samples measure(const Scene& scene, const Integrator& integrator, const Ray& ray, int samples, int sets,
-                uint64_t seed, float known) {
+                uint64_t seed, float spread) {
   std::vector<double> means(size_t(sets), 0);
   parallel_for(means.size(), [&](size_t set) {
     for (int i = 0; i < samples; ++i) {
       Sampler sampler(uint32_t(set), uint32_t(i), seed);
-      means[set] += double(integrator.estimate(scene, ray, sampler, known).radiance.x) / samples;
+      means[set] += double(integrator.estimate(scene, ray, sampler, spread).radiance.x) / samples;
     }
   });
   Samples result;

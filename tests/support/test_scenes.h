@@ -55,9 +55,9 @@ class SceneBuilder {
 std::unique_ptr<Integrator> path(const IntegratorOptions& options);
 
 /// Means of independent sets of `samples` stratified samples each of the radiance along `ray`, first channel.
-/// Values within a set are not independent; their means are. `known`: see Integrator::estimate.
+/// Values within a set are not independent; their means are. `spread`: see Integrator::estimate.
 Samples measure(const Scene& scene, const Integrator& integrator, const Ray& ray, int samples, int sets = 16,
-                uint64_t seed = 1, float known = 0);
+                uint64_t seed = 1, float spread = 0);
 
 /// Ray from `from` through `to`, unit direction.
 Ray ray_through(const Vec3f& from, const Vec3f& to);
