@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -36,7 +37,8 @@ TEST_F(Streams, StandardOutputTakesThePictureAndNothingElse) {
   EXPECT_EQ(read_file(out), read_file(file));
   for (const std::string format : {"exr", "jpg"}) {
     const std::string named = folder_.file("b." + format);
-    ASSERT_EQ(shell(cornell_box + " -o " + named + " -o - --format " + format + " > " + out).exit_code, 0);
+    const std::string outputs = fmt::format(" -o {} -o - --format {} > {}", named, format, out);
+    ASSERT_EQ(shell(cornell_box + outputs).exit_code, 0);
     EXPECT_EQ(read_file(out), read_file(named)) << format;
   }
 }
