@@ -18,7 +18,7 @@ usage: bash bootstrap.sh COMMAND
 
   deps    install the Debian or Ubuntu packages of third_party/apt-packages.txt that are missing
   build   deps, then configure and build the program: build/release/vernier
-  demo    build, then render a Cornell box and other scenes with each integrator into out/
+  demo    build, then render scenes into out/, with a page that shows them: out/index.html
   test    deps, then build the program and its tests, and run them all
   package deps, then build a Debian package for any x86-64-v2 processor and faster ones: build/package/package/*.deb
   help    this text
@@ -100,11 +100,14 @@ build() {
 
 # --- demo ---
 
-render_with_each_integrator() {
-  local scene=$1 name=$2 integrator
-  shift 2
+# picture NAME SCENE [OPTION...]: out/NAME.png
+picture() { "$program" render "$2" -o "out/$1.png" "${@:3}"; }
+
+picture_with_each_integrator() {
+  local name=$1 integrator
+  shift
   for integrator in $("$program" render --integrator help | awk '{ print $1 }'); do
-    "$program" render "$scene" -o "out/$name-$integrator.png" --integrator "$integrator" "$@"
+    picture "$name-$integrator" "$@" --integrator "$integrator"
   done
 }
 
@@ -112,21 +115,26 @@ demo() {
   build vernier_launcher
   mkdir -p out
   SECONDS=0
-  render_with_each_integrator tests/scenes/cornell_box.gltf cornell_box --size 512x512 --spp 64
-  render_with_each_integrator tests/scenes/two_spheres.gltf two_spheres --size 640x480 --spp 64
-  local model name found=0
-  for model in glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb glTF2/textureTransform/TextureTransformTest.gltf; do
-    [[ -f $assimp_models/$model ]] || continue
-    found=1
-    name=$(basename "${model%.*}")
-    render_with_each_integrator "$assimp_models/$model" "$name" --size 640x480 --spp 64
-  done
-  ((found)) || say "demo: the models of the package assimp-testmodels are not there; only our own scenes were rendered"
+  local engine=$assimp_models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb
+  local shown=(out/still_life.png out/night_room.png)
+  picture still_life tests/scenes/still_life.gltf --size 800x450 --spp 48 --fstop 8 --denoise nlm
+  picture night_room tests/scenes/night_room.gltf --size 800x450 --spp 48 --denoise nlm
+  if [[ -f $engine ]]; then
+    picture engine "$engine" --size 640x480 --spp 32 --azimuth 35 --elevation 20 --ground matte --denoise nlm
+    shown+=(out/engine.png)
+  else
+    say "demo: the package assimp-testmodels is not there; only our own scenes are rendered"
+  fi
+  picture layers.### tests/scenes/layer_spheres.gltf --size 400x160 --spp 16 --env studio --turntable 12
+  picture_with_each_integrator cornell_box tests/scenes/cornell_box.gltf --size 320x320 --spp 64
+  picture_with_each_integrator two_spheres tests/scenes/two_spheres.gltf --size 400x300 --spp 64
   say "demo: rendered in $SECONDS s"
   "$program" verify tests/scenes/cornell_box.gltf
   "$program" verify tests/scenes/two_spheres.gltf
-  say "demo: pictures are in $PWD/out:"
-  ls -1 out/*.png
+  "$program" gallery "${shown[@]}" out/layers.*.png out/cornell_box-*.png out/two_spheres-*.png -o out/index.html \
+    --title "What Vernier renders"
+  say "demo: the pictures and $PWD/out/index.html, a page of them all:"
+  ls -1 out
 }
 
 # --- test ---

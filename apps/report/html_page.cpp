@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <Imath/half.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -17,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int small_picture = 236;  // pixels: narrower ones are enlarged to this
 
-std::string base64(const std::vector<unsigned char>& bytes) {
+std::string base64(std::span<const unsigned char> bytes) {
   constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
   text.reserve((bytes.size() + 2) / 3 * 4);
@@ -55,6 +57,25 @@ Json to_json(const Chart& chart) {
   return {{"x", chart.x_label}, {"y", chart.y_label}, {"curves", curves}};
 }
 
+std::string picture_tag(const Image8& picture, std::string_view escaped_text,
+                        std::string_view attributes = {}) {
+  return fmt::format("<img width=\"{}\" height=\"{}\" alt=\"{}\"{} src=\"data:image/png;base64,{}\">",
+                     picture.width, picture.height, escaped_text, attributes,
+                     base64(encode_image8("png", picture)));
+}
+
+/// Half floats, little-endian, in base64.
+std::string base64_halves(const Image& image) {
+  std::vector<unsigned char> bytes;
+  bytes.reserve(2 * image.values.size());
+  for (const float value : image.values) {
+    const uint16_t bits = Imath::half(std::clamp(value, -65504.f, 65504.f)).bits();
+    bytes.push_back(uint8_t(bits & 255));
+    bytes.push_back(uint8_t(bits >> 8));
+  }
+  return base64(bytes);
+}
+
 }  // namespace
 
 std::string escape_html(std::string_view text) {
@@ -89,6 +110,10 @@ void HtmlPage::section(std::string_view heading) {
 void HtmlPage::heading(std::string_view text) { body_ += fmt::format("<h3>{}</h3>\n", escape_html(text)); }
 
 void HtmlPage::paragraph(std::string_view text) { body_ += fmt::format("<p>{}</p>\n", escape_html(text)); }
+
+void HtmlPage::verdict(std::string_view text) {
+  body_ += fmt::format("<p class=\"verdict\">{}</p>\n", escape_html(text));
+}
 
 void HtmlPage::key_figures(const std::vector<std::array<std::string, 2>>& names_and_values) {
   body_ += "<dl class=\"key\">\n";
@@ -133,12 +158,44 @@ void HtmlPage::figures(const std::vector<Figure>& figures) {
   body_ += "<div class=\"figures\">\n";
   for (const Figure& figure : figures) {
     const std::string caption = escape_html(figure.caption);
-    body_ += fmt::format(
-        "<figure{}><img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">"
-        "<figcaption>{}</figcaption></figure>\n",
-        figure.pixelated || figure.picture.width < small_picture ? " class=\"pixelated\"" : "",
-        figure.picture.width, figure.picture.height, caption, base64(encode_image8("png", figure.picture)),
-        caption);
+    body_ +=
+        fmt::format("<figure{}>{}<figcaption>{}</figcaption></figure>\n",
+                    figure.pixelated || figure.picture.width < small_picture ? " class=\"pixelated\"" : "",
+                    picture_tag(figure.picture, caption), caption);
+  }
+  body_ += "</div>\n";
+}
+
+void HtmlPage::viewer(const Viewer& viewer) {
+  const std::string id = fmt::format("pixels-{}", ++viewer_count_);
+  body_ += fmt::format("<div class=\"viewer\" data-values=\"{}\">\n", id);
+  for (const auto& [name, figure] : viewer.versions) {
+    const std::string caption = escape_html(figure.caption);
+    body_ += fmt::format("<figure data-name=\"{}\">{}<figcaption>{}</figcaption></figure>\n",
+                         escape_html(name), picture_tag(figure.picture, caption), caption);
+  }
+  body_ += "</div>\n";
+  data(id, {{"width", viewer.values.width},
+            {"height", viewer.values.height},
+            {"scale", viewer.scale},
+            {"halves", base64_halves(viewer.values)}});
+}
+
+void HtmlPage::cards(const std::vector<Card>& cards) {
+  has_cards_ = true;
+  body_ += "<div class=\"cards\">\n";
+  for (const Card& card : cards) {
+    const std::string title = escape_html(card.title);
+    body_ += fmt::format("<div class=\"card\"><a href=\"{}\"{}>", escape_html(card.link),
+                         card.pictures.size() > 1 ? " class=\"frames\"" : "");
+    for (size_t i = 0; i < card.pictures.size(); ++i)
+      body_ += picture_tag(card.pictures[i], title, i > 0 ? " hidden" : "");
+    body_ += fmt::format("</a><h3>{}</h3>", title);
+    for (const auto& line : card.lines) body_ += fmt::format("<p>{}</p>", escape_html(line));
+    if (!card.command.empty())
+      body_ += fmt::format("<details><summary>command</summary><pre>{}</pre></details>",
+                           escape_html(card.command));
+    body_ += "</div>\n";
   }
   body_ += "</div>\n";
 }
@@ -178,9 +235,13 @@ std::string HtmlPage::text() const {
       "<meta name=\"generator\" content=\"vernier {}\">\n<title>{}</title>\n<style>\n{}</style></head>\n"
       "<body><main>\n{}</main>\n",
       version(), title_, web_assets::page_css, body_);
-  if (chart_count_ > 0)
-    page += fmt::format("<script>{}</script>\n<script>\n{}</script>\n", web_assets::chart_js,
-                        web_assets::page_js);
+  const auto program = [&](std::string_view text) { page += fmt::format("<script>\n{}</script>\n", text); };
+  if (viewer_count_ > 0) program(web_assets::viewer_js);
+  if (has_cards_) program(web_assets::cards_js);
+  if (chart_count_ > 0) {
+    program(web_assets::chart_js);
+    program(web_assets::charts_js);
+  }
   return page + "</body></html>\n";
 }
 

@@ -44,6 +44,25 @@ struct Figure {
   bool pixelated = false;  ///< enlarged with hard pixel edges
 };
 
+/// One picture in several versions of the same proportions, to be compared; and what is known of its pixels.
+struct Viewer {
+  struct Version {
+    std::string name;  ///< a word or two
+    Figure figure;
+  };
+  std::vector<Version> versions;  ///< the first two are shown at first
+  Image values;                   ///< red, green, blue, relative standard error (NaN: not known)
+  int scale = 1;                  ///< pixels of the picture along the side of one of `values`
+};
+
+/// Pictures that belong together, one or the frames of an animation, and what is said of them.
+struct Card {
+  std::string title, link;  ///< the link is an address relative to the page
+  std::vector<Image8> pictures;
+  std::vector<std::string> lines;
+  std::string command;  ///< folded away; may be empty
+};
+
 std::string escape_html(std::string_view text);
 
 /// A page of HTML put together from top to bottom, complete in one file: pictures, style and the program that
@@ -55,6 +74,8 @@ class HtmlPage {
   void section(std::string_view heading);
   void heading(std::string_view text);  ///< within a section
   void paragraph(std::string_view text);
+  /// What a reader in a hurry should know.
+  void verdict(std::string_view text);
   /// Figures that matter most, each with its name.
   void key_figures(const std::vector<std::array<std::string, 2>>& names_and_values);
   /// The first column is text and the others are numbers, set to the right.
@@ -66,6 +87,8 @@ class HtmlPage {
   void command(std::string_view line);
   /// Side by side as far as there is room.
   void figures(const std::vector<Figure>& figures);
+  void viewer(const Viewer& viewer);
+  void cards(const std::vector<Card>& cards);
   void charts(const std::vector<Chart>& charts);
   void bar(const std::vector<BarPart>& parts);
   /// Data for programs that read the page, as <script type="application/json" id=...>.
@@ -77,7 +100,8 @@ class HtmlPage {
  private:
   std::string title_;
   std::string body_;
-  int chart_count_ = 0;
+  int chart_count_ = 0, viewer_count_ = 0;
+  bool has_cards_ = false;
 };
 
 }  // namespace vernier::apps

@@ -12,8 +12,12 @@
 
 namespace vernier::apps {
 
+int shrink_factor(const Image& image, int longest) {
+  return (std::max(image.width, image.height) + longest - 1) / longest;
+}
+
 Image shrink(const Image& image, int longest) {
-  const int side = (std::max(image.width, image.height) + longest - 1) / longest;
+  const int side = shrink_factor(image, longest);
   if (side <= 1) return image;
   Image small((image.width + side - 1) / side, (image.height + side - 1) / side, image.channels);
   for (int y = 0; y < small.height; ++y)

@@ -11,7 +11,10 @@
 
 namespace vernier::apps {
 
-/// Pixels averaged in square blocks until neither side is longer than `longest`.
+/// Side of the square blocks that a picture must be averaged in until neither side is longer than `longest`.
+int shrink_factor(const Image& image, int longest);
+
+/// Pixels averaged in blocks of that size.
 Image shrink(const Image& image, int longest);
 
 /// Part of `image`.

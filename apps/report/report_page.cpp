@@ -74,6 +74,34 @@ std::string with_interval(const Json& error) {
   return fmt::format("{} ({})", percent(error["rel_rmse"]), interval(error));
 }
 
+/// What the picture is worth, in a few sentences.
+void add_verdict(HtmlPage& page, const Json& stats) {
+  const Json& error = stats["error"];
+  const bool is_denoised = stats.contains("denoised") && stats["denoised"].contains("rel_rmse");
+  const Json& told = is_denoised ? stats["denoised"] : error;
+  std::string text =
+      told["rel_rmse"].is_number()
+          ? fmt::format("{} is {} off, as far as sampling goes: relative RMSE, {} with 95 % confidence.",
+                        is_denoised ? "The denoised picture" : "This picture", percent(told["rel_rmse"]),
+                        interval(told))
+          : "How far off this picture is, is not known: that takes 16 samples a pixel.";
+  const Json& asked = stats["picture"]["asked"]["rel_rmse"];
+  if (asked.is_number() && told["rel_rmse"].is_number())
+    text += fmt::format(" {} was asked for{}.", percent(asked),
+                        stats["picture"]["stopped_by"] == "error" ? " and reached" : " and not reached");
+  const auto missing = [&](const char* name, const char* what) {
+    const double share = stats["missing"][name]["share"];
+    if (share >= 1e-3)
+      text += fmt::format(" {} is not in it: up to {:.2g} % of all light.", what, 100 * share);
+  };
+  missing("bent", "Light of lamps behind glass that bends it");
+  missing("depth", "Light on paths longer than --max-depth");
+  if (const double doubtful = error["unreliable"].is_number() ? error["unreliable"].get<double>() : 0;
+      doubtful > 0)
+    text += fmt::format(" {:.2g} % of the pixels are not to be trusted.", 100 * doubtful);
+  page.verdict(text);
+}
+
 void add_key_figures(HtmlPage& page, const Json& stats) {
   const Json& error = stats["error"];
   std::vector<std::array<std::string, 2>> figures{
@@ -95,43 +123,67 @@ void add_key_figures(HtmlPage& page, const Json& stats) {
   page.key_figures(figures);
 }
 
-/// The picture; when there is a denoised one, that and the noisy one beside it, each with its error.
-void add_pictures(HtmlPage& page, const Json& stats, const Film& film,
-                  const std::optional<Denoised>& denoised, const DisplayOptions& display) {
-  const auto figure = [&](const Image& picture, const std::string& caption) {
-    return Figure{to_display(shrink(picture, longest_picture), display),
-                  fmt::format("{}View \"{}\"", caption, display.view)};
-  };
-  if (!denoised) {
-    page.figures({figure(film.image(), "")});
-    return;
-  }
-  const Json& error = stats["denoised"];
-  std::string noisy = "As rendered: estimated error " + with_interval(stats["error"]);
-  if (denoised->error)
-    noisy += fmt::format(", {} when measured like the denoised picture's", percent(error["rel_rmse_before"]));
-  page.figures(
-      {figure(denoised->picture, fmt::format("Denoised by {}: estimated error {}. ",
-                                             error["filter"].get<std::string>(), with_interval(error))),
-       figure(film.image(), noisy + ". ")});
+/// What the picture's reader may ask of a pixel.
+Image pixel_values(const Image& picture, const Image& relative_error) {
+  Image values(picture.width, picture.height, 4);
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      std::copy_n(picture.pixel(x, y), 3, values.pixel(x, y));
+      values.pixel(x, y)[3] = *relative_error.pixel(x, y);
+    }
+  return values;
 }
 
-void add_error_maps(HtmlPage& page, const Film& film, const std::optional<Denoised>& denoised) {
-  page.section("Where it is uncertain");
-  const ErrorLayers layers = error_layers(film);
-  const Image error = shrink(relative_error(film.image(), layers.standard_error), longest_map);
+/// The picture and the map of its error; when there is a denoised one, that and its map too.
+void add_pictures(HtmlPage& page, const Json& stats, const Film& film,
+                  const std::optional<Denoised>& denoised, const DisplayOptions& display) {
+  Viewer viewer;
+  const auto add_picture = [&](const char* name, const Image& picture, const std::string& caption) {
+    viewer.versions.push_back({name,
+                               {to_display(shrink(picture, longest_picture), display),
+                                fmt::format("{}View \"{}\".", caption, display.view), false}});
+  };
+  const Image rendered = film.image();
+  const Image error = relative_error(rendered, error_layers(film).standard_error);
+  const double scale = round_scale(shrink(error, longest_map));
+  const auto add_map = [&](const char* name, const Image& map, const char* caption) {
+    viewer.versions.push_back({name, map_figure(shrink(map, longest_picture), scale, caption, true)});
+  };
+  const Image* shown = &rendered;
+  Image shown_error = error;
+  if (denoised) {
+    const Json& told = stats["denoised"];
+    std::string noisy = "As rendered: estimated error " + with_interval(stats["error"]);
+    if (denoised->error)
+      noisy +=
+          fmt::format(", {} when measured like the denoised picture's", percent(told["rel_rmse_before"]));
+    add_picture("denoised", denoised->picture,
+                fmt::format("Denoised by {}: estimated error {}. ", told["filter"].get<std::string>(),
+                            with_interval(told)));
+    add_picture("as rendered", rendered, noisy + ". ");
+    shown = &denoised->picture;
+    shown_error = denoised->pixel_error ? relative_error(denoised->picture, *denoised->pixel_error)
+                                        : Image(rendered.width, rendered.height, 1);
+    if (!denoised->pixel_error) std::fill(shown_error.values.begin(), shown_error.values.end(), NAN);
+  } else {
+    add_picture("picture", rendered, "");
+  }
+  add_map(denoised ? "error as rendered" : "error", error, "Estimated relative standard error");
+  if (denoised && denoised->pixel_error)
+    add_map("error after denoising", shown_error, "The same after denoising, blur included");
+  viewer.values = pixel_values(shrink(*shown, longest_map), shrink(shown_error, longest_map));
+  viewer.scale = shrink_factor(*shown, longest_map);
+  page.viewer(viewer);
+}
+
+void add_doubt(HtmlPage& page, const Film& film) {
+  page.section("What the error rests on");
   const Image counts = shrink(sample_counts(film), longest_map);
-  const double scale = round_scale(error);
-  std::vector<Figure> figures{map_figure(error, scale, "Estimated relative standard error", true)};
+  std::vector<Figure> figures;
   const auto [fewest, most] = std::minmax_element(counts.values.begin(), counts.values.end());
   if (*fewest < *most) figures.push_back(map_figure(counts, round_scale(counts), "Samples", false));
-  figures.push_back(
-      {colormap(shrink(layers.unreliable, longest_map)), "Pixels not to be trusted: pale", false});
-  if (denoised && denoised->pixel_error) {
-    const Image left = shrink(relative_error(denoised->picture, *denoised->pixel_error), longest_map);
-    figures.insert(figures.begin(), map_figure(left, scale, "The same after denoising, blur included", true));
-    std::swap(figures[0], figures[1]);
-  }
+  figures.push_back({colormap(shrink(error_layers(film).unreliable, longest_map)),
+                     "Pixels not to be trusted: pale", false});
   page.figures(figures);
   page.paragraph(
       "The error is that of sampling only. A pixel is not to be trusted when what is known of it comes from "
@@ -250,9 +302,10 @@ std::string report_page(const Json& stats, const Film& film, const std::optional
   HtmlPage page("Render of " + scene,
                 fmt::format("vernier {}, {} integrator, {} x {} pixels", stats["vernier"].get<std::string>(),
                             stats["picture"]["integrator"].get<std::string>(), film.width(), film.height()));
-  add_key_figures(page, stats);
+  add_verdict(page, stats);
   add_pictures(page, stats, film, denoised, display);
-  add_error_maps(page, film, denoised);
+  add_key_figures(page, stats);
+  add_doubt(page, film);
   add_convergence(page, stats);
   add_time_and_rays(page, stats);
   add_scene(page, stats);

@@ -7,8 +7,10 @@
 
 namespace vernier::apps::web_assets {
 
-extern const std::string_view page_css;  ///< apps/web/page.css
-extern const std::string_view page_js;   ///< apps/web/page.js
-extern const std::string_view chart_js;  ///< Chart.js, minified, from the system's package
+extern const std::string_view page_css;   ///< apps/report/page.css
+extern const std::string_view chart_js;   ///< Chart.js, minified, from the system's package
+extern const std::string_view charts_js;  ///< apps/report/charts.js
+extern const std::string_view viewer_js;  ///< apps/report/viewer.js
+extern const std::string_view cards_js;   ///< apps/report/cards.js
 
 }  // namespace vernier::apps::web_assets

@@ -4,6 +4,10 @@
   'use strict';
   const colors = ['#4269a5', '#d98032', '#4d9a6a', '#a3557e', '#8c8f3f', '#7a828e', '#2f9aa8', '#b3423f'];
 
+  const style = getComputedStyle(document.documentElement);
+  const line = style.getPropertyValue('--line');
+  Chart.defaults.color = style.getPropertyValue('--quiet');
+
   function trimmed(value) { return String(Number(value.toPrecision(3))); }
   function percent(value) { return trimmed(100 * value) + ' %'; }
 
@@ -28,7 +32,7 @@
       title: { display: true, text: title },
       afterBuildTicks: function (scale) { scale.ticks = roundTicks(scale.ticks); },
       ticks: { callback: format, autoSkip: false, maxRotation: 0 },
-      grid: { color: '#e4e8ee' }
+      grid: { color: line }
     };
   }
 
@@ -44,13 +48,13 @@
   // Colours come again after eight curves, dotted.
   function datasets(curve, number) {
     const color = curve.guide ? '#7a828e' : colors[number % colors.length];
-    const line = {
+    const drawn = {
       label: curve.name, data: points(curve.points), borderColor: color, backgroundColor: color,
       borderWidth: 2, borderDash: number < colors.length ? [] : [2, 3], pointRadius: 3, tension: 0
     };
-    if (curve.guide) return [Object.assign(line, { borderDash: [5, 4], borderWidth: 1, pointRadius: 0 })];
-    if (curve.band.length === 0) return [line];
-    return [line, edge(curve, 0, { fill: false }), edge(curve, 1, { fill: '-1', backgroundColor: color + '33' })];
+    if (curve.guide) return [Object.assign(drawn, { borderDash: [5, 4], borderWidth: 1, pointRadius: 0 })];
+    if (curve.band.length === 0) return [drawn];
+    return [drawn, edge(curve, 0, { fill: false }), edge(curve, 1, { fill: '-1', backgroundColor: color + '33' })];
   }
 
   function draw(canvas) {
