@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrators/render/render.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <chrono>
 #include <mutex>
 
+#include "core/base/parallel.h"
 #include "integrators/render/backdrop.h"
 #include "integrators/render/camera_sample.h"
 #include "integrators/render/observer_thread.h"
@@ -163,11 +162,11 @@ class Renderer {
     const uint32_t wanted = wanted_part();
     do {
       if (is_pause_due()) take_pauses();
-      tbb::parallel_for(0, state_.tile_count(), [&](int tile) {
+      parallel_for(size_t(state_.tile_count()), [&](size_t tile) {
         // Every pixel gets its first samples unless interrupted.
         if (stop_ || (state_.done > 0 && out_of_time()) || is_pause_due()) return;
-        uint32_t& part = state_.parts[size_t(tile)];
-        if (part < wanted) render_tile(tile, part, wanted);
+        uint32_t& part = state_.parts[tile];
+        if (part < wanted) render_tile(int(tile), part, wanted);
         part = std::max(part, wanted);
       });
     } while (is_pause_due() && !stop_);
