@@ -4,6 +4,7 @@
 #include "apps/vernier/commands.h"
 #include "apps/vernier/denoising.h"
 #include "apps/vernier/display_flags.h"
+#include "apps/vernier/exr_flags.h"
 #include "apps/vernier/flags.h"
 #include "apps/vernier/messages.h"
 #include "apps/vernier/render_options.h"
@@ -17,6 +18,7 @@ struct DenoiseFlags {
   std::string input, output, filter = std::string(denoisers().front().name);
   unsigned threads = 0;
   DisplayOptions display;
+  ExrOptions exr;
   bool quiet = false;
 };
 
@@ -35,6 +37,7 @@ ExitCode run_denoise(const DenoiseFlags& flags, const std::string& command_line)
   if (flags.output.empty())
     throw Error(ErrorKind::usage, "missing -o FILE (.exr, .png, .jpg); see vernier denoise --help");
   const Denoiser& denoiser = find_denoiser(flags.filter);
+  check_exr_flags(flags.exr, {flags.output}, true);
   check_writable_image(flags.output);
   const DisplayOptions display =
       is_display_file(flags.output) ? with_chosen_view(flags.display) : flags.display;
@@ -50,7 +53,7 @@ ExitCode run_denoise(const DenoiseFlags& flags, const std::string& command_line)
   Metadata& metadata = picture.metadata;
   for (const auto& [name, value] : denoised_metadata(denoiser, denoised.error)) metadata[name] = value;
   metadata["vernier:denoiseCommand"] = command_line;
-  write_picture(flags.output, picture, metadata, display);
+  write_picture(flags.output, picture, metadata, display, flags.exr);
   if (!flags.quiet)
     fmt::print("{}\n", one_line(fmt::format("wrote {}: {}x{}, {}", flags.output, picture.image.width,
                                             picture.image.height, denoised_text(denoiser, denoised.error))));
@@ -72,6 +75,7 @@ void register_denoise(Program& program) {
       ->type_name("NAME")
       ->capture_default_str();
   add_display_flags(*command, flags->display);
+  add_exr_flags(*command, flags->exr);
   add_threads_flag(*command, flags->threads);
   command->add_flag("-q,--quiet", flags->quiet, "say nothing but errors");
   command->footer(

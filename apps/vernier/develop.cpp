@@ -7,6 +7,7 @@
 #include "apps/vernier/commands.h"
 #include "apps/vernier/denoising.h"
 #include "apps/vernier/display_flags.h"
+#include "apps/vernier/exr_flags.h"
 #include "apps/vernier/flags.h"
 #include "apps/vernier/messages.h"
 #include "apps/vernier/outputs.h"
@@ -22,6 +23,7 @@ struct DevelopFlags {
   std::string input, denoise, layer, background;
   std::vector<std::string> outputs;
   DisplayOptions display;
+  ExrOptions exr;
   unsigned threads = 0;
   bool quiet = false;
 };
@@ -64,6 +66,7 @@ void require_arguments(const DevelopFlags& flags) {
   if (!flags.layer.empty() && !flags.denoise.empty())
     throw Error(ErrorKind::usage, {}, "--denoise", "filters the colour, and --layer shows something else");
   require_separate_files({flags.input, flags.display.config}, flags.outputs);
+  check_exr_flags(flags.exr, flags.outputs, false);
   for (const auto& output : flags.outputs) check_writable_image(output);
 }
 
@@ -98,7 +101,9 @@ ExitCode run_develop(const DevelopFlags& flags, const std::string& command_line)
 
   Outputs outputs;
   for (const auto& output : flags.outputs) {
-    if (!outputs.attempt([&] { write_picture(output, picture, metadata, display); }) || flags.quiet) continue;
+    if (!outputs.attempt([&] { write_picture(output, picture, metadata, display, flags.exr); }) ||
+        flags.quiet)
+      continue;
     const std::string view = is_display_file(output) ? fmt::format(", view {}", display.view) : "";
     fmt::print("{}\n", one_line(fmt::format("wrote {}: {}x{}{}{}", output, picture.image.width,
                                             picture.image.height, view, done)));
@@ -117,6 +122,7 @@ void register_develop(Program& program) {
       ->type_name("FILE")
       ->allow_extra_args(false);
   add_display_flags(*command, flags->display);
+  add_exr_flags(*command, flags->exr);
   command->add_option("--denoise", flags->denoise, "filter the noise out first; 'help' lists the filters")
       ->type_name("FILTER");
   command->add_option("--layer", flags->layer, "show this layer of the file instead of its colour")

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <nlohmann/json.hpp>
+#include <span>
 #include <stdexcept>
 
 #include "apps/vernier/commands.h"
@@ -89,9 +92,22 @@ ExitCode parse_failed(const CLI::App& app, const CLI::ParseError& error) {
   return ExitCode::usage;
 }
 
+/// Whether `render --progress json` is asked for. That must be known before the flags are read: what is wrong
+/// with them is said in JSON too.
+bool asks_for_json(std::span<const char* const> words) {
+  if (words.size() < 2 || words[1] != std::string_view("render")) return false;
+  for (size_t i = 2; i < words.size(); ++i)
+    if (words[i] == std::string_view("--progress=json") ||
+        (words[i] == std::string_view("json") && words[i - 1] == std::string_view("--progress")))
+      return true;
+  return false;
+}
+
 ExitCode run_program(int argc, char** argv) {
   Program program;
-  program.command_line = shell_quoted({argv, static_cast<size_t>(argc)});
+  const std::span<const char* const> words(argv, static_cast<size_t>(argc));
+  program.command_line = shell_quoted(words);
+  if (asks_for_json(words)) speak_json({{"vernier", version()}, {"command", program.command_line}});
   program.app.name("vernier");
   program.app.description("CPU renderer for glTF 2.0 scenes.");
   program.app.footer(
@@ -128,6 +144,7 @@ ExitCode exit_code(ErrorKind kind) {
 int main(int argc, char** argv) {
   using namespace vernier;
   using namespace vernier::apps;
+  const auto start = std::chrono::steady_clock::now();
   install_cleanup_signals();
   ExitCode code = ExitCode::done;
   try {
@@ -145,5 +162,7 @@ int main(int argc, char** argv) {
     print_error(fmt::format("unexpected: {}", error.what()));
     code = ExitCode::input;
   }
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  print_event({{"event", "finished"}, {"exit_code", static_cast<int>(code)}, {"seconds", elapsed.count()}});
   return static_cast<int>(code);
 }

@@ -8,6 +8,7 @@
 
 #include "apps/vernier/commands.h"
 #include "apps/vernier/display_flags.h"
+#include "apps/vernier/exr_flags.h"
 #include "apps/vernier/flags.h"
 #include "apps/vernier/messages.h"
 #include "apps/vernier/render_options.h"
@@ -23,6 +24,7 @@ struct MergeFlags {
   std::vector<std::string> inputs;
   std::string output, layers;
   DisplayOptions display;
+  ExrOptions exr;
   unsigned threads = 0;
   bool quiet = false;
 };
@@ -90,6 +92,7 @@ ExitCode run_merge(const MergeFlags& flags, const std::string& command_line) {
   if (!flags.layers.empty() && is_display_file(flags.output))
     throw Error(ErrorKind::usage, {}, "--aov", "only an .exr can hold layers; name one with -o");
   const std::vector<Layer> chosen = find_film_layers(flags.layers);
+  check_exr_flags(flags.exr, {flags.output}, !flags.layers.empty());
   check_writable_image(flags.output);
   const DisplayOptions display =
       is_display_file(flags.output) ? with_chosen_view(flags.display) : flags.display;
@@ -100,7 +103,7 @@ ExitCode run_merge(const MergeFlags& flags, const std::string& command_line) {
   if (result.film.has_alpha()) require_alpha_fits(flags.output);
   result.error = estimate_error(result.film);
   const LayeredImage picture = with_film_layers(result.film, chosen);
-  write_picture(flags.output, picture, merged_metadata(merged, command_line), display);
+  write_picture(flags.output, picture, merged_metadata(merged, command_line), display, flags.exr);
   if (!flags.quiet)
     fmt::print("{}\n",
                one_line(fmt::format("wrote {}: {}x{}, {:.4g} spp of {} renders{}", flags.output,
@@ -126,6 +129,7 @@ void register_merge(Program& program) {
                    "layers beside the colour: error, samples, variance, half")
       ->type_name("LIST");
   add_display_flags(*command, flags->display);
+  add_exr_flags(*command, flags->exr);
   add_threads_flag(*command, flags->threads);
   command->add_flag("-q,--quiet", flags->quiet, "say nothing but errors");
   command->footer(

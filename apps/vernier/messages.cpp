@@ -4,14 +4,51 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 namespace vernier::apps {
+namespace {
 
-void print_error(std::string_view text) { fmt::print(stderr, "error: {}\n", one_line(text)); }
+bool json_is_spoken = false;
+
+const char* name_of(Notice::Severity severity) {
+  return severity == Notice::Severity::warning ? "warning" : "note";
+}
+
+}  // namespace
+
+void speak_json(nlohmann::ordered_json started) {
+  json_is_spoken = true;
+  started.update({{"event", "started"}});
+  print_event(started);
+}
+
+bool speaks_json() { return json_is_spoken; }
+
+void print_event(const nlohmann::ordered_json& event) {
+  if (!json_is_spoken) return;
+  // File names need not be UTF-8, which JSON is.
+  fmt::print(stderr, "{}\n", event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+void print_error(std::string_view text) {
+  if (json_is_spoken)
+    print_event({{"event", "failed"}, {"text", one_line(text)}});
+  else
+    fmt::print(stderr, "error: {}\n", one_line(text));
+}
+
+void print_notice(const Notice& notice) {
+  if (json_is_spoken)
+    print_event({{"event", name_of(notice.severity)},
+                 {"place", one_line(notice.place)},
+                 {"text", one_line(notice.text)}});
+  else
+    fmt::print(stderr, "{}\n", describe(notice));
+}
 
 std::string describe(const Notice& notice) {
-  const bool warning = notice.severity == Notice::Severity::warning;
-  return one_line(fmt::format("{}: {}{}{}", warning ? "warning" : "note", notice.place,
+  return one_line(fmt::format("{}: {}{}{}", name_of(notice.severity), notice.place,
                               notice.place.empty() ? "" : ": ", notice.text));
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/vernier/notice_log.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
@@ -20,7 +18,7 @@ void NoticeLog::add(const Notice& notice) {
   std::string place;
   for (const std::string* part : std::array<const std::string*, 3>{&scene_, &detail_, &kept.place})
     if (!part->empty()) place += (place.empty() ? "" : ": ") + *part;
-  fmt::print(stderr, "{}\n", describe({kept.severity, place, kept.text}));
+  print_notice({kept.severity, place, kept.text});
 }
 
 void NoticeLog::add(std::span<const Notice> notices) {

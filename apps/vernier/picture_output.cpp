@@ -62,11 +62,11 @@ void make_folder_of(const std::string& file) {
 void write_output(const std::string& output, const LayeredImage& picture, const Metadata& metadata,
                   const RenderRequest& request) {
   if (!is_standard_stream(output)) {
-    write_picture(output, picture, metadata, request.display);
+    write_picture(output, picture, metadata, request.display, request.flags.exr);
     return;
   }
   const std::string format = format_or_default(request.flags.run.format);
-  write_to_standard_output(encode_picture(format, picture, metadata, request.display));
+  write_to_standard_output(encode_picture(format, picture, metadata, request.display, request.flags.exr));
 }
 
 bool is_finished_picture(const std::string& file) {

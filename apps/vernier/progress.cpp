@@ -9,6 +9,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "apps/vernier/messages.h"
+
 namespace vernier::apps {
 namespace {
 
@@ -52,24 +54,29 @@ void draw_bar(double fraction, const std::string& text) {
 }
 
 void print_json(const RenderProgress& progress, const PlaceInRun& place) {
-  nlohmann::ordered_json line = {
+  nlohmann::ordered_json event = {
       {"event", "progress"},
       {"fraction", progress.fraction},
       {"seconds", progress.seconds},
       {"samples_per_pixel", progress.samples_per_pixel},
       {"samples", progress.samples},
       {"rays", progress.rays.camera + progress.rays.bounce + progress.rays.shadow}};
-  if (progress.error) line["rel_rmse"] = progress.error->rel_rmse;
-  if (const auto left = time_left(progress)) line["seconds_left"] = *left;
-  if (place.pictures > 1) {
-    line["picture"] = place.picture;
-    line["pictures"] = place.pictures;
-    if (const auto left = place.time_left(progress.fraction)) line["seconds_left_in_all"] = *left;
-  }
-  fmt::print(stderr, "{}\n", line.dump());
+  if (progress.error) add_error(event, *progress.error);
+  if (const auto left = time_left(progress)) event["seconds_left"] = *left;
+  event["picture"] = place.picture;
+  event["pictures"] = place.pictures;
+  if (const auto left = place.time_left(progress.fraction)) event["seconds_left_in_all"] = *left;
+  print_event(event);
 }
 
 }  // namespace
+
+void add_error(nlohmann::ordered_json& event, const ErrorEstimate& error) {
+  if (!std::isfinite(error.rel_rmse)) return;
+  event["rel_rmse"] = error.rel_rmse;
+  event["low"] = error.low;
+  event["high"] = error.high;
+}
 
 std::optional<double> PlaceInRun::time_left(double fraction) const {
   const double done = double(rendered) + fraction, left = double(pictures - picture) + 1 - fraction;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+
 #include "apps/vernier/render_options.h"
 
 namespace vernier::apps {
@@ -14,6 +17,9 @@ struct PlaceInRun {
   /// Seconds until the last is done, when `fraction` of this one is; none when too little is done to say.
   std::optional<double> time_left(double fraction) const;
 };
+
+/// Adds to an event the error and its 95 % interval, where they are known.
+void add_error(nlohmann::ordered_json& event, const ErrorEstimate& error);
 
 /// Says on standard error how far a render is: a bar redrawn in place, a line now and then, or JSON lines.
 class ProgressReporter {

@@ -8,6 +8,7 @@
 
 #include "apps/vernier/denoising.h"
 #include "apps/vernier/display_flags.h"
+#include "apps/vernier/exr_flags.h"
 #include "apps/vernier/flags.h"
 #include "core/base/quantities.h"
 #include "core/denoise/denoise.h"
@@ -85,6 +86,7 @@ void add_output_flags(CLI::App& command, RenderFlags& flags) {
       ->type_name("FILTER");
   add_preview_flags(command, flags.run);
   add_display_flags(command, flags.display);
+  add_exr_flags(command, flags.exr);
   command.add_option("--stats", flags.stats, "write what was measured as JSON (docs/stats.md)")
       ->type_name("FILE");
   command

@@ -11,6 +11,7 @@
 #include "apps/vernier/run_flags.h"
 #include "apps/vernier/surroundings.h"
 #include "core/display/display.h"
+#include "core/image/image_io.h"
 #include "integrators/integrator.h"
 #include "vernier/scene.h"
 
@@ -41,6 +42,7 @@ struct RenderFlags {
   std::string layers;   ///< --aov; empty: none
   std::string denoise;  ///< filter; empty: none
   DisplayOptions display;
+  ExrOptions exr;
   std::string progress = "auto";
   std::string stats, report;
   std::string checkpoint, resume;  ///< files; empty: none

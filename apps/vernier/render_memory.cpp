@@ -32,6 +32,8 @@ size_t while_writing(const MemoryUse& use) {
   // The color alone, its eight-bit values, and the encoded file, whose buffer grows by doubling; alpha is put
   // beside a color that was there without.
   if (use.display) peak = std::max(peak, kept + (use.alpha ? 3 : 1) * color + 3 * 4 * sizeof(uint8_t));
+  if (use.half)
+    peak = std::max(peak, kept + 2 * color + size_t(use.layer_channels + use.alpha) * sizeof(float));
   // The film's picture, and a map of the errors before it is made smaller.
   if (use.report) peak = std::max(peak, kept + error_layers_bytes_per_pixel() + color + sizeof(float));
   return peak;

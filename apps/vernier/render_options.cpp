@@ -11,6 +11,7 @@
 
 #include "apps/vernier/denoising.h"
 #include "apps/vernier/display_flags.h"
+#include "apps/vernier/exr_flags.h"
 #include "apps/vernier/flags.h"
 #include "apps/vernier/picture_output.h"
 #include "apps/vernier/stopwatch.h"
@@ -136,6 +137,7 @@ MemoryUse memory_use(const RenderRequest& request) {
   use.denoise = request.denoiser != nullptr;
   use.display = has_display_output(flags);
   use.report = !flags.report.empty();
+  use.half = flags.exr.half;
   return use;
 }
 
@@ -173,6 +175,7 @@ RenderRequest check_render_flags(const RenderFlags& given) {
   request.progress = parse_progress(flags);
   request.layer_list = choose_layers(flags);
   request.layers = find_layers(request.layer_list);
+  check_exr_flags(flags.exr, named_outputs(flags), !request.layers.empty());
   if (!flags.denoise.empty()) request.denoiser = &find_denoiser(flags.denoise);
   if (request.settings.width > 0) check_picture_size(request.settings, memory_use(request));
   request.display = choose_display(flags);

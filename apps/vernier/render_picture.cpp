@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "apps/report/report_page.h"
 #include "apps/vernier/checkpointing.h"
 #include "apps/vernier/choose_camera.h"
 #include "apps/vernier/denoising.h"
+#include "apps/vernier/exr_flags.h"
+#include "apps/vernier/messages.h"
 #include "apps/vernier/outputs.h"
 #include "apps/vernier/partial_pictures.h"
 #include "apps/vernier/picture_output.h"
@@ -61,10 +64,31 @@ void prepare(const RenderRequest& request, PosedScene& posed, const View& view, 
   if (request.flags.import.strict) refuse_warnings(request.flags.scene, posed.scene()->notices());
 }
 
-/// The lines that say what was done; standard output may be the picture's.
+/// What a program that follows the render is told before it.
+nlohmann::ordered_json rendering_event(const RenderReport& report, const RenderFlags& flags,
+                                       const PlaceInRun& place) {
+  const RenderSettings& settings = report.settings;
+  return {{"event", "rendering"},          {"scene", flags.scene},      {"camera", report.camera},
+          {"width", settings.width},       {"height", settings.height}, {"outputs", flags.outputs},
+          {"asked", asked_json(settings)}, {"picture", place.picture},  {"pictures", place.pictures}};
+}
+
+nlohmann::ordered_json wrote_event(const std::string& path, const LayeredImage& picture,
+                                   const RenderResult& result) {
+  nlohmann::ordered_json event = {{"event", "wrote"}, {"file", path}};
+  std::error_code unknown;
+  if (const auto bytes = std::filesystem::file_size(path, unknown); !unknown) event["bytes"] = bytes;
+  if (!is_display_file(path)) event["channels"] = picture.channel_names;
+  event["samples_per_pixel"] = samples_per_pixel(result);
+  add_error(event, result.error);
+  return event;
+}
+
+/// The lines that say what was done. Standard output may be the picture's; standard error may be a
+/// program's, which knows already.
 void say(const RenderFlags& flags, const std::string& line) {
   const bool is_taken = std::any_of(flags.outputs.begin(), flags.outputs.end(), is_standard_stream);
-  if (flags.quiet) return;
+  if (flags.quiet || (is_taken && speaks_json())) return;
   fmt::print(is_taken ? stderr : stdout, "{}\n", line);
   std::fflush(stdout);
 }
@@ -84,7 +108,8 @@ PictureOutcome render_picture(const RenderRequest& request, PosedScene& posed, c
   checkpointing.attach(session);
   PartialPictures partial(request, report, log);
   partial.attach(session, context.write_now);
-  if (flags.verbose) fmt::print(stderr, "{}", scene_lines(report));
+  if (flags.verbose && !speaks_json()) fmt::print(stderr, "{}", scene_lines(report));
+  print_event(rendering_event(report, flags, context.place));
 
   run(session, request, context.place);
   const RenderResult& result = session.result();
@@ -94,10 +119,14 @@ PictureOutcome render_picture(const RenderRequest& request, PosedScene& posed, c
   LayeredImage picture = session.picture(request.layer_list);
   Metadata metadata = image_metadata(report, flags, result);
   const auto denoised = denoise_if_asked(request, picture, metadata);
+  if (const std::string warning = half_warning(flags.exr, picture); !warning.empty())
+    log.add({Notice::Severity::warning, "--half", warning});
   Outputs outputs;
   for (const auto& path : flags.outputs)
-    if (outputs.attempt([&] { write_output(path, picture, metadata, request); }))
+    if (outputs.attempt([&] { write_output(path, picture, metadata, request); })) {
       report.files.push_back(path);
+      print_event(wrote_event(path, picture, result));
+    }
   report.output_seconds = watch.lap();
   auto stats = stats_json(report, flags, result, log);
   if (denoised) stats["denoised"] = denoised_json(*request.denoiser, denoised->error);

@@ -41,12 +41,6 @@ std::string_view name(StopReason reason) {
 /// A figure that JSON can hold: null while it is not known.
 Json known(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json asked_json(const RenderSettings& options) {
-  return {{"samples_per_pixel", options.limits.spp > 0 ? Json(options.limits.spp) : Json(nullptr)},
-          {"seconds", known(options.limits.seconds)},
-          {"rel_rmse", options.limits.error > 0 ? Json(options.limits.error) : Json(nullptr)}};
-}
-
 Json picture_json(const RenderReport& report, const RenderFlags& flags, const RenderResult& result) {
   Json picture = {{"width", report.settings.width},
                   {"height", report.settings.height},
@@ -112,6 +106,12 @@ std::string shortfall(const RenderReport& report, const RenderResult& result) {
 }
 
 }  // namespace
+
+Json asked_json(const RenderSettings& options) {
+  return {{"samples_per_pixel", options.limits.spp > 0 ? Json(options.limits.spp) : Json(nullptr)},
+          {"seconds", known(options.limits.seconds)},
+          {"rel_rmse", options.limits.error > 0 ? Json(options.limits.error) : Json(nullptr)}};
+}
 
 std::string error_text(const ErrorEstimate& error) {
   if (!std::isfinite(error.rel_rmse)) return "";

@@ -32,6 +32,9 @@ struct RenderReport {
   double output_seconds = 0;       ///< display transform, encoding, writing
 };
 
+/// When rendering is to end, as in the --stats file.
+nlohmann::ordered_json asked_json(const RenderSettings& settings);
+
 /// Image header entries that say how the picture came about.
 Metadata image_metadata(const RenderReport& report, const RenderFlags& flags, const RenderResult& result);
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <new>
+#include <nlohmann/json.hpp>
 
 #include "apps/vernier/messages.h"
 #include "apps/vernier/picture_output.h"
@@ -149,6 +150,7 @@ bool RenderRun::exists(const RenderFlags& picture) const {
 bool RenderRun::is_skipped(const RenderFlags& picture) {
   if (!request_.flags.run.skip_existing || !exists(picture)) return false;
   if (!picture.quiet) fmt::print("skipped {}: it is there\n", fmt::join(picture.outputs, ", "));
+  print_event({{"event", "skipped"}, {"outputs", picture.outputs}});
   count_done(1);
   return true;
 }

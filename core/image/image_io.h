@@ -48,11 +48,19 @@ PartialImage8 decode_partial_image8(std::span<const uint8_t> bytes, const std::s
 /// The same of a whole file; a truncated one is an error.
 Image8 decode_image8(std::span<const uint8_t> bytes, const std::string& name, const ImageLimits& limits = {});
 
-/// Writes float channels as OpenEXR with ZIP compression. `channel_names` has image.channels entries ("R",
-/// "G", "B", "albedo.R", ...). Replaces `path` wholly or not at all (core/base/atomic_file.h). Throws
-/// Error(output).
+/// Largest value of a 16-bit float.
+inline constexpr float largest_half = 65504;
+
+/// How the pixels of an OpenEXR file are stored.
+struct ExrOptions {
+  bool half = false;  ///< R, G, B and A in 16 bits, values limited to +-largest_half; other channels keep 32
+  std::string compression = "zip";  ///< by OpenImageIO's name, with a level after a colon where it has one
+};
+
+/// Writes float channels as OpenEXR. `channel_names` has image.channels entries ("R", "G", "B", "albedo.R",
+/// ...). Replaces `path` wholly or not at all (core/base/atomic_file.h). Throws Error(output).
 void write_exr(const std::string& path, const Image& image, const std::vector<std::string>& channel_names,
-               const Metadata& metadata);
+               const Metadata& metadata, const ExrOptions& options = {});
 
 /// Writes display-encoded 8-bit values as PNG or JPEG by the extension of `path`, atomically like write_exr.
 /// PNG keeps each metadata entry as a text chunk, JPEG all of them as lines of its ImageDescription.
@@ -60,7 +68,7 @@ void write_image8(const std::string& path, const Image8& image, const Metadata& 
 
 // The bytes of such files. `format` is "png" or "jpg".
 std::vector<unsigned char> encode_exr(const Image& image, const std::vector<std::string>& channel_names,
-                                      const Metadata& metadata);
+                                      const Metadata& metadata, const ExrOptions& options = {});
 std::vector<unsigned char> encode_image8(const std::string& format, const Image8& image,
                                          const Metadata& metadata = {});
 

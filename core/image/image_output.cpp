@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 
@@ -85,15 +86,32 @@ std::vector<unsigned char> encode(const std::string& path, const char* format, c
   return bytes;
 }
 
+bool is_color_or_alpha(const std::string& channel) {
+  return channel == "R" || channel == "G" || channel == "B" || channel == "A";
+}
+
+/// The values with those limited that are to be stored in 16 bits.
+Image limited(const Image& image, const std::vector<std::string>& channel_names) {
+  Image result = image;
+  for (size_t i = 0; i < result.values.size(); ++i)
+    if (is_color_or_alpha(channel_names[i % channel_names.size()]) && !std::isnan(result.values[i]))
+      result.values[i] = std::clamp(result.values[i], -largest_half, largest_half);
+  return result;
+}
+
 OIIO::ImageSpec exr_spec(const std::string& path, const Image& image,
-                         const std::vector<std::string>& channel_names, const Metadata& metadata) {
+                         const std::vector<std::string>& channel_names, const Metadata& metadata,
+                         const ExrOptions& options) {
   if (image.empty() || channel_names.size() != size_t(image.channels))
     throw output_error(path, fmt::format("image has {} channels and {} channel names", image.channels,
                                          channel_names.size()));
   OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeFloat);
   spec.channelnames = channel_names;
   spec.alpha_channel = spec.channelindex("A");
-  spec.attribute("compression", "zip");
+  spec.attribute("compression", options.compression);
+  if (options.half)
+    for (const auto& name : channel_names)
+      spec.channelformats.push_back(is_color_or_alpha(name) ? OIIO::TypeHalf : OIIO::TypeFloat);
   // Red, green, blue and white of Rec.709 (ITU-R BT.709-6, 1.3 and 1.4).
   const float chromaticities[8] = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
   spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities);
@@ -116,12 +134,13 @@ const char* format_of(const std::string& path) {
 }  // namespace
 
 void write_exr(const std::string& path, const Image& image, const std::vector<std::string>& channel_names,
-               const Metadata& metadata) {
-  const OIIO::ImageSpec spec = exr_spec(path, image, channel_names, metadata);
+               const Metadata& metadata, const ExrOptions& options) {
+  const OIIO::ImageSpec spec = exr_spec(path, image, channel_names, metadata, options);
+  const Image half = options.half ? limited(image, channel_names) : Image();
   AtomicFile file(path);
   AtomicFileProxy proxy(path, file);
   try {
-    write_image(path, "openexr", spec, image.values.data(), proxy);
+    write_image(path, "openexr", spec, (options.half ? half : image).values.data(), proxy);
   } catch (const Error&) {
     if (!file.has_failed()) throw;  // else commit() knows more than the library does
   }
@@ -129,11 +148,13 @@ void write_exr(const std::string& path, const Image& image, const std::vector<st
 }
 
 std::vector<unsigned char> encode_exr(const Image& image, const std::vector<std::string>& channel_names,
-                                      const Metadata& metadata) {
+                                      const Metadata& metadata, const ExrOptions& options) {
   const std::string name = "picture";
+  const Image half = options.half ? limited(image, channel_names) : Image();
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
-  write_image(name, "openexr", exr_spec(name, image, channel_names, metadata), image.values.data(), memory);
+  write_image(name, "openexr", exr_spec(name, image, channel_names, metadata, options),
+              (options.half ? half : image).values.data(), memory);
   return bytes;
 }
 

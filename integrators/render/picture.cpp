@@ -89,9 +89,9 @@ std::optional<Image> coverage_of(const LayeredImage& picture) {
 }
 
 void write_picture(const std::string& path, const LayeredImage& picture, Metadata metadata,
-                   const DisplayOptions& display) {
+                   const DisplayOptions& display, const ExrOptions& exr) {
   if (!is_display_file(path)) {
-    write_exr(path, picture.image, picture.channel_names, metadata);
+    write_exr(path, picture.image, picture.channel_names, metadata, exr);
     return;
   }
   add_display(metadata, display);
@@ -99,8 +99,9 @@ void write_picture(const std::string& path, const LayeredImage& picture, Metadat
 }
 
 std::vector<unsigned char> encode_picture(const std::string& format, const LayeredImage& picture,
-                                          Metadata metadata, const DisplayOptions& display) {
-  if (format == "exr") return encode_exr(picture.image, picture.channel_names, metadata);
+                                          Metadata metadata, const DisplayOptions& display,
+                                          const ExrOptions& exr) {
+  if (format == "exr") return encode_exr(picture.image, picture.channel_names, metadata, exr);
   add_display(metadata, display);
   return encode_image8(format, displayed("picture." + format, picture, display), metadata);
 }

@@ -41,9 +41,10 @@ std::optional<Image> coverage_of(const LayeredImage& picture);
 /// .exr and straight to .png. Display files are shown as `display` says; their headers tell how. Throws
 /// Error(output), and Error(usage) as require_alpha_fits().
 void write_picture(const std::string& path, const LayeredImage& picture, Metadata metadata,
-                   const DisplayOptions& display);
+                   const DisplayOptions& display, const ExrOptions& exr = {});
 /// The bytes of such a file; `format` is "exr", "png" or "jpg".
 std::vector<unsigned char> encode_picture(const std::string& format, const LayeredImage& picture,
-                                          Metadata metadata, const DisplayOptions& display);
+                                          Metadata metadata, const DisplayOptions& display,
+                                          const ExrOptions& exr = {});
 
 }  // namespace vernier

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <filesystem>
 
 #include "core/image/image_io.h"
 #include "tests/support/process.h"
@@ -54,6 +55,28 @@ TEST_F(OutputFiles, OneThatFailsDoesNotKeepTheOthersFromBeingWritten) {
     fs::remove(arguments[2 * failing + 1]);
   }
   EXPECT_TRUE(folder_.names().empty());
+}
+
+TEST_F(OutputFiles, ExrFilesAreStoredAsAsked) {
+  const std::string exr = folder_.file("a.exr"), half = folder_.file("half.exr");
+  const auto stored = [](const std::string& file) { return std::filesystem::file_size(file); };
+  ASSERT_EQ(render({"-o", exr, "--compression", "none"}).exit_code, 0);
+  ASSERT_EQ(render({"-o", half, "--compression", "none", "--half"}).exit_code, 0);
+  constexpr size_t pixels = size_t{16} * 16;
+  EXPECT_NEAR(double(stored(exr) - stored(half)), pixels * 3 * 2, 64);  // but for the longer command
+  EXPECT_EQ(run_vernier({"develop", exr, "-o", half, "--half", "--compression", "dwaa:45", "-q"}).exit_code,
+            0);
+
+  const auto refused = [&](const std::vector<std::string>& flags, const std::string& text) {
+    const ProcessResult result = render(flags);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr(text));
+  };
+  refused({"-o", folder_.file("b.png"), "--half"}, "--half: is about .exr files");
+  refused({"-o", exr, "--compression", "zpi"}, "did you mean 'zip");
+  refused({"-o", exr, "--compression", "zip:4"}, "no level");
+  refused({"-o", exr, "--compression", "dwaa:x"}, "dwaa:45");
+  refused({"-o", exr, "--compression", "dwab", "--aov", "depth"}, "--compression: loses digits");
 }
 
 TEST_F(OutputFiles, WhatCannotBeWrittenIsFoundBeforeRendering) {

@@ -213,22 +213,6 @@ TEST(Render, ExposureIsForDisplayFilesOnly) {
   EXPECT_EQ(brightness("2", "bright.exr"), brightness("0", "plain.exr"));
 }
 
-TEST(Render, ProgressAsJsonLines) {
-  const test::TemporaryFolder folder;
-  const ProcessResult result = run_vernier({"render", cornell_box, "-o", folder.file("a.exr"), "--size",
-                                            "128x128", "--time", "1s", "--progress", "json"});
-  EXPECT_EQ(result.exit_code, 0);
-  double last = 0;
-  for (const std::string& line : result.err_lines()) {
-    const auto progress = nlohmann::json::parse(line);
-    EXPECT_EQ(progress["event"], "progress");
-    EXPECT_GE(progress["fraction"].get<double>(), last);
-    last = progress["fraction"];
-    EXPECT_LE(last, 1.0);
-  }
-  EXPECT_GE(result.err_lines().size(), 1u);
-}
-
 TEST(Render, ScenesCanBePosedAndVariedOnlyAsTheyAllow) {
   const test::TemporaryFolder folder;
   const ProcessResult result = render(cornell_box, folder.file("a.exr"), {"--variant", "blue"});

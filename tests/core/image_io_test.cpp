@@ -63,6 +63,28 @@ TEST(ImageIo, ExrRoundTripKeepsEveryBit) {
   EXPECT_EQ(back.values, image.values);
 }
 
+TEST(ImageIo, HalfIsForColorAndLimitsWhatItCannotHold) {
+  const TemporaryFolder folder;
+  Image image(2, 1, 6);
+  image.values = {1e6f, -1e6f, 1 / 3.f, 0.25f, 1e6f, 1 / 3.f, std::nanf(""), 65504, 0, 1, -3, 16777216.f};
+  const std::vector<std::string> names{"R", "G", "B", "A", "depth", "error.R"};
+  ExrOptions options;
+  options.half = true;
+  options.compression = "piz";
+  write_exr(folder.file("a.exr"), image, names, {}, options);
+  const LayeredImage back = read_layers(folder.file("a.exr"));
+  const auto value = [&](const char* channel, int x) { return *back.single(channel)->pixel(x, 0); };
+  EXPECT_EQ(value("R", 0), largest_half);
+  EXPECT_EQ(value("G", 0), -largest_half);
+  EXPECT_NEAR(value("B", 0), 1 / 3.f, 1 / 3.f / 2048);
+  EXPECT_NE(value("B", 0), 1 / 3.f);
+  EXPECT_EQ(value("A", 0), 0.25f);
+  EXPECT_TRUE(std::isnan(value("R", 1)));
+  EXPECT_EQ(value("depth", 0), 1e6f);
+  EXPECT_EQ(value("error.R", 0), 1 / 3.f);
+  EXPECT_EQ(value("error.R", 1), image.values[11]);
+}
+
 TEST(ImageIo, ExrKeepsInfinityAndNan) {
   const TemporaryFolder folder;
   Image image(2, 1, 3);
