@@ -9,13 +9,12 @@
 
 #include "core/math/ray.h"
 #include "core/sampling/sampler.h"
+#include "integrators/light_parts.h"
 #include "vernier/math.h"
 #include "vernier/result.h"
 #include "vernier/settings.h"
 
 namespace vernier {
-
-class Scene;
 
 /// Light that a sample knows of and leaves out, in the unit of its radiance.
 struct MissingLight {
@@ -39,6 +38,15 @@ struct Estimate {
   /// `radiance` then leaves out; only with IntegratorOptions::background_apart.
   Rgb background{0, 0, 0};
   bool met_surface = false;  ///< by the camera ray
+  LightParts parts;          ///< of `radiance`, where SampleContext::sorter asks for them
+};
+
+/// What is known and wanted of a sample beside its ray.
+struct SampleContext {
+  /// About the standard deviation of the pixel's samples in the channel where it is largest, 0 if unknown:
+  /// noise far below it is not worth much effort. The mean does not depend on it.
+  float spread = 0;
+  const LightSorter* sorter = nullptr;  ///< keeps light apart; null: nobody asks
 };
 
 /// A way to estimate the light along a camera ray. Immutable while rendering; called from many threads.
@@ -46,10 +54,9 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// Block 0 of `sampler` belongs to the camera; the others are free. `spread` is about the standard
-  /// deviation of the pixel's samples in the channel where it is largest, 0 if unknown: noise far below it
-  /// is not worth much effort. The mean does not depend on it.
-  virtual Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler, float spread) const = 0;
+  /// Block 0 of `sampler` belongs to the camera; the others are free.
+  virtual Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler,
+                            const SampleContext& context) const = 0;
 };
 
 /// One line of the table of integrators.
@@ -57,6 +64,7 @@ struct IntegratorEntry {
   std::string_view name;
   std::string_view description;
   std::unique_ptr<Integrator> (*make)(const IntegratorOptions&);
+  bool splits_light = false;  ///< fills Estimate::parts
 };
 
 /// All integrators (integrators/registry.cpp).

@@ -14,13 +14,14 @@ class PathIntegrator : public Integrator {
   explicit PathIntegrator(const IntegratorOptions& options) : options_(options) {}
 
   Estimate estimate(const Scene& scene, const Ray& camera_ray, Sampler& sampler,
-                    float spread) const override {
+                    const SampleContext& context) const override {
     Estimate out;
     Segment segment = camera_segment(scene, camera_ray);
     Rgb throughput = camera_response(scene, segment);
     float eta_scale = 1;    // product of eta^2: undoes the compression of radiance inside dense media
     float audit_scale = 1;  // of the few paths that go on beyond the depth limit
     Scattering last;        // how the ray came to be
+    LightRoute route;       // on which light comes to the camera; kept where parts are asked for
     bool looks_through = options_.background_apart;  // the camera sees along it, through clear surfaces
     auto hit = intersect_from_camera(scene, segment);
     ++out.rays.camera;
@@ -32,7 +33,8 @@ class PathIntegrator : public Integrator {
         if (depth <= options_.max_depth) out.background = throughput;
         break;
       }
-      add(out, depth, throughput * met_emission(scene, last, segment.ray, hit));
+      add(out, depth, throughput * met_emission(scene, last, segment.ray, hit),
+          {context.sorter, route, source_of(hit)});
       if (!hit) break;
 
       sampler.start_block(uint32_t(depth));
@@ -43,6 +45,11 @@ class PathIntegrator : public Integrator {
       float roulette = sampler.next1();
       const float shadow_roulette = sampler.next1();
 
+      if (looks_through && depth <= options_.max_depth && scene.catches_shadow(*hit)) {
+        out.background = throughput * unshadowed(out, scene, *hit, light_choice, light_point);
+        out.met_surface = depth > 1 || out.background != throughput;
+        break;
+      }
       if (depth == options_.max_depth) {
         if (roulette >= audited_share) break;
         roulette /= audited_share;
@@ -54,9 +61,10 @@ class PathIntegrator : public Integrator {
       if (options_.light_sampling != LightSampling::bsdf)
         if (const auto light = scene.sample_light(*hit, light_choice, light_point);
             light && !(looks_through && will_be_met(*light, surface)))
-          add_direct(out, {scene, *hit, surface, throughput, depth}, *light, {spread, shadow_roulette});
+          add_direct(out, {scene, *hit, surface, throughput, depth, route}, *light, context, shadow_roulette);
       const auto next = surface.sample(lobe_choice, direction);
       if (!next) break;
+      if (context.sorter) route = route.scattered(surface, next->wi, next->is_delta, next->is_straight);
       throughput *= next->weight;
       eta_scale *= next->eta * next->eta;
       const float survival = survival_probability(depth, throughput * (eta_scale / audit_scale));
@@ -90,17 +98,24 @@ class PathIntegrator : public Integrator {
     const Shading& surface;
     Rgb throughput;
     int depth;
+    const LightRoute& route;
   };
 
-  /// Russian roulette of shadow rays: the spread of the pixel's samples, and a random number.
-  struct ShadowRoulette {
-    float spread;
-    float number;
+  /// How light came, for who keeps it apart.
+  struct Origin {
+    const LightSorter* sorter;
+    const LightRoute& route;
+    LightSource source;
   };
+  static LightSource source_of(const std::optional<Interaction>& hit) {
+    return hit ? LightSource{LightSource::Kind::instance, hit->instance} : LightSource{};
+  }
 
   /// Light of a path of `depth` vertices after the camera, its source included.
-  void add(Estimate& out, int depth, const Rgb& radiance) const {
+  void add(Estimate& out, int depth, const Rgb& radiance, const Origin& origin) const {
     (depth <= options_.max_depth ? out.radiance : out.missing.depth) += radiance;
+    if (origin.sorter && depth <= options_.max_depth)
+      origin.sorter->add(out.parts, radiance, origin.route, origin.source);
   }
 
   /// Emission met by a ray, weighted against next-event estimation: area lights and environment alike.
@@ -122,24 +137,37 @@ class PathIntegrator : public Integrator {
     return !light.is_delta && surface.is_transmitted(light.wi);
   }
 
+  /// Part of the light from above that gets to a surface that catches shadows. What bends light dims it
+  /// here as if it did not.
+  Rgb unshadowed(Estimate& out, const Scene& scene, const Interaction& at, double light_choice,
+                 const Vec2d& light_point) const {
+    const auto light = scene.sample_ground_light(at, light_choice, light_point);
+    if (!light) return {1, 1, 1};
+    ++out.rays.shadow;
+    return transmittance(scene, at.spawn_to(*light)).fraction;
+  }
+
   /// Next-event estimation: light from one sampled light, weighted against the BSDF's own sampling.
-  void add_direct(Estimate& out, const Vertex& vertex, const LightSample& light,
-                  ShadowRoulette roulette) const {
+  void add_direct(Estimate& out, const Vertex& vertex, const LightSample& light, const SampleContext& context,
+                  float roulette) const {
     const BsdfEval scattered = vertex.surface.eval(light.wi);
     if (is_black(scattered.f_cos)) return;
     const bool only_sampled = light.is_delta || options_.light_sampling == LightSampling::light;
     const float weight = only_sampled ? 1 : power_heuristic(light.pdf, scattered.pdf);
     Rgb radiance = vertex.throughput * light.radiance * scattered.f_cos * (weight / light.pdf);
-    const float survival = shadow_survival_probability(radiance, roulette.spread);
-    if (roulette.number >= survival) return;
+    const float survival = shadow_survival_probability(radiance, context.spread);
+    if (roulette >= survival) return;
     ++out.rays.shadow;
     const Passage passage = transmittance(vertex.scene, vertex.at.spawn_to(light));
     if (is_black(passage.fraction)) return;
     radiance *= passage.fraction / survival;
-    if (!passage.is_bent)
-      add(out, vertex.depth + 1 + passage.surfaces, radiance);
-    else if (light.is_delta)
+    if (!passage.is_bent) {
+      const LightRoute route =
+          context.sorter ? vertex.route.scattered(vertex.surface, light.wi, false, false) : vertex.route;
+      add(out, vertex.depth + 1 + passage.surfaces, radiance, {context.sorter, route, light.source});
+    } else if (light.is_delta) {
       out.missing.bent += radiance;
+    }
   }
 
   /// Of a shadow ray that brings at most `radiance` to a pixel whose samples spread anyway. What roulette

@@ -59,7 +59,7 @@ class RaycastIntegrator : public Integrator {
       : show_(find_by_name(shows, "thing to show", options.show).show),
         background_apart_(options.background_apart) {}
 
-  Estimate estimate(const Scene& scene, const Ray& ray, Sampler&, float) const override {
+  Estimate estimate(const Scene& scene, const Ray& ray, Sampler&, const SampleContext&) const override {
     Estimate out;
     ++out.rays.camera;
     const auto hit = scene.intersect(ray);

@@ -14,7 +14,7 @@ std::unique_ptr<Integrator> make_raycast(const IntegratorOptions&);
 
 std::span<const IntegratorEntry> integrators() {
   static constexpr std::array<IntegratorEntry, 3> table{{
-      {"path", "path tracing: all light, unbiased; tells what it cannot find", make_path},
+      {"path", "path tracing: all light, unbiased; tells what it cannot find", make_path, true},
       {"whitted", "direct light, ambient, mirror reflection and refraction", make_whitted},
       {"raycast", "primary hits: normals, depth, ids, ... (--show)", make_raycast},
   }};

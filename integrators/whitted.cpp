@@ -20,7 +20,8 @@ class WhittedIntegrator : public Integrator {
                               deepest));
   }
 
-  Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler, float) const override {
+  Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler,
+                    const SampleContext&) const override {
     Walk walk{scene, sampler, {}, 0};
     ++walk.out.rays.camera;
     const Segment segment = camera_segment(scene, ray);

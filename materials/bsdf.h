@@ -27,6 +27,10 @@ class Bsdf : public std::variant<Lambert, Glossy, Dielectric, Mixture, Layered> 
     if (sample && std::abs(sample->wi.z) < least_cosine) sample.reset();
     return sample;
   }
+  Rgb diffuse(const Vec3f& wo, const Vec3f& wi) const {
+    if (wo.z < least_cosine || std::abs(wi.z) < least_cosine) return {0, 0, 0};
+    return std::visit([&](const auto& model) { return model.diffuse(wo, wi); }, base());
+  }
   Rgb albedo(const Vec3f& wo) const {
     return std::visit([&](const auto& model) { return model.albedo(wo); }, base());
   }

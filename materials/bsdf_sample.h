@@ -12,6 +12,7 @@
 //
 //   BsdfEval eval(wo, wi) const                                  both 0 for delta lobes
 //   std::optional<BsdfSample> sample(wo, u, v) const             empty: the sample carries nothing
+//   Rgb diffuse(wo, wi) const                                    what of eval's f_cos a diffuse body scatters
 //   Rgb albedo(wo) const                                         estimate of the fraction of light scattered
 //   SpecularRays specular(wo) const                              what a Whitted ray tracer follows
 //   Rgb straight(wo) const                                       fraction of light that passes undeflected,

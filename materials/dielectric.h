@@ -74,6 +74,8 @@ struct Dielectric {
     return BsdfSample{wi, value.f_cos / value.pdf, value.pdf, Lobe::glossy, bent};
   }
 
+  Rgb diffuse(const Vec3f& /*wo*/, const Vec3f& /*wi*/) const { return {0, 0, 0}; }
+
   Rgb albedo(const Vec3f& wo) const {
     const Split split = boundary(wo.z);
     return split.reflected + split.transmitted;

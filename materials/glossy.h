@@ -58,6 +58,10 @@ class Glossy {
     return BsdfSample{wi, value.f_cos / value.pdf, value.pdf, lobe, wi.z < 0 ? body_.eta : 1};
   }
 
+  Rgb diffuse(const Vec3f& wo, const Vec3f& wi) const {
+    return scattered_by_body(seen_from(wo), toward(wi), wi.z);
+  }
+
   Rgb albedo(const Vec3f& wo) const {
     const GgxAlbedo ggx = ggx_toward(wo);
     return fresnel_.albedo(ggx, wo.z) + multiple_ * ggx.missing +
@@ -97,16 +101,22 @@ class Glossy {
     return view;
   }
 
+  /// What the facets do with light from wi, on either side.
+  GgxAlbedo toward(const Vec3f& wi) const { return ggx_toward({wi.x, wi.y, std::abs(wi.z)}); }
+
+  Rgb scattered_by_body(const View& view, const GgxAlbedo& toward_wi, float cos_i) const {
+    const float body =
+        view.enters * (1 - bound_.albedo(toward_wi)) * body_scale_ * cosine_hemisphere_pdf(std::abs(cos_i));
+    return cos_i < 0 ? body_.transmitted * (body / square(body_.eta)) : body_.reflected * body;
+  }
+
   BsdfEval eval(const Vec3f& wo, const Vec3f& wi, const View& view) const {
-    const GgxAlbedo ggx = ggx_toward({wi.x, wi.y, std::abs(wi.z)});
+    const GgxAlbedo ggx = toward(wi);
     const float cosine = cosine_hemisphere_pdf(std::abs(wi.z));
-    const float body = view.enters * (1 - bound_.albedo(ggx)) * body_scale_ * cosine;
-    if (wi.z < 0) {
-      const float prob = std::max(0.f, 1 - view.facet_prob - view.reflect_prob);
-      return {body_.transmitted * (body / square(body_.eta)), prob * cosine};
-    }
+    const Rgb body = scattered_by_body(view, ggx, wi.z);
+    if (wi.z < 0) return {body, std::max(0.f, 1 - view.facet_prob - view.reflect_prob) * cosine};
     const float multiple = view.missing * ggx.missing * multiple_scale_ * cosine;
-    BsdfEval value{body_.reflected * body + multiple_ * multiple, view.reflect_prob * cosine};
+    BsdfEval value{body + multiple_ * multiple, view.reflect_prob * cosine};
     if (ggx_.is_smooth()) return value;
     const Vec3f m = normalize(wo + wi);
     const float lambda_o = ggx_.lambda(wo);

@@ -22,6 +22,7 @@ struct Lambert {
     return BsdfSample{wi, reflectance, cosine_hemisphere_pdf(wi.z), Lobe::diffuse, 1};
   }
 
+  Rgb diffuse(const Vec3f& wo, const Vec3f& wi) const { return eval(wo, wi).f_cos; }
   Rgb albedo(const Vec3f& /*wo*/) const { return reflectance; }
   SpecularRays specular(const Vec3f& /*wo*/) const { return {}; }
   Rgb straight(const Vec3f& /*wo*/) const { return {0, 0, 0}; }

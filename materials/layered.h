@@ -35,6 +35,10 @@ class Layered {
     return picked;
   }
 
+  Rgb diffuse(const Vec3f& wo, const Vec3f& wi) const {
+    return base_.diffuse(wo, wi) * base_scale(wo, wi, seen_from(wo));
+  }
+
   Rgb albedo(const Vec3f& wo) const {
     const float coat = coat_.reflectance(coat_.frame(wo).to_local(wo).z);
     return Rgb(coat) + (sheen_.albedo(wo.z) + base_.albedo(wo) * sheen_.base_scale(wo.z)) * (1 - coat);

@@ -70,6 +70,7 @@ class Material {
   /// these corners; 0: no texture.
   float emissive_texels(const std::array<SurfaceAttributes, 3>& corners) const;
   /// Emits, but is no light: seen by rays that happen to meet it (KHR_materials_unlit).
+  bool catches_shadow() const { return description_.catches_shadow; }
   bool is_unlit() const { return description_.unlit; }
   bool is_opaque() const { return description_.alpha_mode == AlphaMode::opaque; }
   bool double_sided() const { return description_.double_sided; }

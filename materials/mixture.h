@@ -42,6 +42,10 @@ struct Mixture {
     return picked;
   }
 
+  Rgb diffuse(const Vec3f& wo, const Vec3f& wi) const {
+    return glossy.diffuse(wo, wi) * (glass_weight > 0 ? 1 - glass_weight : 1);
+  }
+
   Rgb albedo(const Vec3f& wo) const {
     if (glass_weight <= 0) return glossy.albedo(wo);
     return glossy.albedo(wo) * (1 - glass_weight) + glass.albedo(wo) * glass_weight;

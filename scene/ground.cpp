@@ -6,7 +6,7 @@
 
 namespace vernier {
 
-void add_ground(SceneDescription& description) {
+void add_ground(SceneDescription& description, GroundKind kind) {
   constexpr float reach = 100, gap = 1e-4f;  // in radii of the subject; the gap keeps flat bottoms above it
   const SceneGeometry geometry(description.meshes, description.instances);
   const Subject subject(geometry);
@@ -24,11 +24,12 @@ void add_ground(SceneDescription& description) {
   matt.name = "ground";
   matt.base_color = {0.5f, 0.5f, 0.5f, 1};
   matt.metallic = matt.specular = 0;
+  matt.catches_shadow = kind == GroundKind::shadow;
   description.instances.push_back(
       {"ground", uint32_t(description.meshes.size()), uint32_t(description.materials.size()), {}});
   description.meshes.push_back(std::move(square));
   description.materials.push_back(std::move(matt));
-  description.choices.emplace_back("ground", "matte");
+  description.choices.emplace_back("ground", kind == GroundKind::shadow ? "shadow" : "matte");
 }
 
 }  // namespace vernier

@@ -32,6 +32,7 @@ void note_without_volume(std::span<const InstanceDescription> instances, const s
 Scene::Scene(SceneDescription description, const SceneOptions& options)
     : hash_(std::move(description.hash)),
       choices_(std::move(description.choices)),
+      names_(description),
       geometry_(std::move(description.meshes), description.instances),
       textures_(std::move(description.textures)) {
   compile_materials(description);
@@ -100,6 +101,7 @@ void Scene::collect_lights(const SceneDescription& description) {
     std::vector<std::unique_ptr<TriangleLight>> candidates(geometry_.triangle_count(i));
     parallel_for(candidates.size(), [&](size_t primitive) {
       auto light = std::make_unique<TriangleLight>(geometry_, material, i, uint32_t(primitive));
+      light->set_source({LightSource::Kind::instance, i});
       if (light->power(bounds()) > 0) candidates[primitive] = std::move(light);
     });
     triangle_lights_[i].assign(candidates.size(), -1);
@@ -113,12 +115,19 @@ void Scene::collect_lights(const SceneDescription& description) {
       if (joined) triangle_lights_[i][next] = triangle_lights_[i][primitive++];
     }
   }
-  for (const auto& punctual : description.lights) {
-    auto light = std::make_unique<PunctualLight>(punctual);
+  for (uint32_t i = 0; i < description.lights.size(); ++i) {
+    auto light = std::make_unique<PunctualLight>(description.lights[i]);
+    light->set_source({LightSource::Kind::lamp, i});
     if (light->power(bounds()) > 0) add(std::move(light));
   }
   if (description.environment) add_environment(description.environment, lights);
   lights_ = LightSet(std::move(lights));
+  collect_ground_light();
+}
+
+void Scene::collect_ground_light() {
+  if (std::any_of(materials_.begin(), materials_.end(), [](const Material& m) { return m.catches_shadow(); }))
+    ground_light_.emplace(environment_, lights_.delta_lights());
 }
 
 void Scene::add_environment(std::shared_ptr<const EnvironmentDescription> description,
@@ -140,6 +149,7 @@ void Scene::surround(std::shared_ptr<const EnvironmentDescription> description) 
   environment_index_ = -1;
   if (description) add_environment(std::move(description), lights);
   lights_ = LightSet(std::move(lights));
+  collect_ground_light();
 }
 
 std::optional<SurfacePoint> Scene::intersect(const Ray& ray) const {
@@ -187,6 +197,7 @@ std::optional<LightSample> Scene::sample_light(const SurfacePoint& from, double 
   if (!light) return std::nullopt;
   auto sample = light->sample(from, v);
   if (!sample) return std::nullopt;
+  sample->source = light->source();
   if (sample->is_delta)
     sample->radiance /= prob;
   else

@@ -10,7 +10,9 @@
 #include "scene/coverage.h"
 #include "scene/geometry.h"
 #include "scene/lights/environment.h"
+#include "scene/lights/ground_light.h"
 #include "scene/lights/light_set.h"
+#include "scene/names.h"
 #include "scene/shading.h"
 #include "scene/volume_set.h"
 
@@ -53,6 +55,15 @@ class Scene {
   /// radiance). u picks the light, v the point on it.
   std::optional<LightSample> sample_light(const SurfacePoint& from, double u, const Vec2d& v) const;
 
+  /// Whether a camera sees of a surface the shadow alone.
+  bool catches_shadow(const SurfacePoint& point) const {
+    return ground_light_ && material(point).catches_shadow();
+  }
+  /// As GroundLight::sample, of a scene that catches shadows.
+  std::optional<LightSample> sample_ground_light(const SurfacePoint& from, double u, const Vec2d& v) const {
+    return ground_light_->sample(from, u, v);
+  }
+
   /// Radiance that arrives along `ray` by emission at `hit` (null: from infinity), with the pdf with which
   /// sample_light(*from) would have chosen it. from null: the camera, pdf 0.
   LightEval emitted(const SurfacePoint* from, const Ray& ray, const SurfacePoint* hit) const;
@@ -60,6 +71,7 @@ class Scene {
   const Material& material(const SurfacePoint& point) const {
     return materials_[material_of_instance_[point.instance]];
   }
+  const SceneNames& names() const { return names_; }
   const VolumeSet& volumes() const { return volumes_; }
   const LightSet& lights() const { return lights_; }
   const SceneGeometry& geometry() const { return geometry_; }
@@ -77,11 +89,14 @@ class Scene {
   LightReceiver receiver(const SurfacePoint& point) const;
   void compile_materials(const SceneDescription& description);
   void collect_lights(const SceneDescription& description);
+  /// Once the lights are there, or others are.
+  void collect_ground_light();
   void add_environment(std::shared_ptr<const EnvironmentDescription> description,
                        std::vector<std::unique_ptr<Light>>& lights);
 
   std::string hash_, accelerator_name_;
   std::vector<std::pair<std::string, std::string>> choices_;
+  SceneNames names_;
   SceneGeometry geometry_;
   std::vector<Texture> textures_;
   std::vector<Material> materials_;
@@ -95,6 +110,7 @@ class Scene {
       triangle_lights_;  ///< by instance and triangle: index into lights_, -1 for none
   const EnvironmentLight* environment_ = nullptr;
   int32_t environment_index_ = -1;
+  std::optional<GroundLight> ground_light_;  ///< where some material catches shadows
   std::vector<Notice> notices_;
 };
 

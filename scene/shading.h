@@ -46,6 +46,13 @@ class Shading {
                          local->lobe == Lobe::diffuse};
   }
 
+  /// Part of what eval() gives that diffuse bodies scatter, in [0, 1].
+  Rgb diffuse_share(const Vec3f& wi) const {
+    const Rgb all = eval(wi).f_cos, diffuse = bsdf_.diffuse(wo_, frame_.to_local(wi));
+    const auto share = [&](int c) { return all[c] > 0 ? std::min(diffuse[c] / all[c], 1.f) : 0; };
+    return {share(0), share(1), share(2)};
+  }
+
   /// Whether light from wi passes through the surface.
   bool is_transmitted(const Vec3f& wi) const { return dot(wi, ng_) < 0; }
 

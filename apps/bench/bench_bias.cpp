@@ -31,7 +31,8 @@ class Fireflies : public Integrator {
  public:
   explicit Fireflies(double share) : share_(float(share)) {}
 
-  Estimate estimate(const Scene& /*scene*/, const Ray& ray, Sampler& sampler, float) const override {
+  Estimate estimate(const Scene& /*scene*/, const Ray& ray, Sampler& sampler,
+                    const SampleContext&) const override {
     sampler.start_block(1);
     const float u = sampler.next1();
     const bool calm = std::lround(10 * ray.direction.x) % 2 == 0;

@@ -52,11 +52,23 @@ void add_background_flags(CLI::App& command, BackgroundFlags& flags) {
           "R,G,B, or a picture that fills the frame")
       ->type_name("COLOUR|FILE");
   command
-      .add_option("--ground", flags.ground,
-                  "under the scene: none, or matte, a level grey plane that it stands on")
-      ->check(CLI::IsMember({"none", "matte"}))
-      ->type_name("none|matte")
+      .add_option(
+          "--ground", flags.ground,
+          "under the scene: none; matte, a level grey plane that it stands on; shadow, its shadow alone on "
+          "what --transparent or --background shows")
+      ->check(CLI::IsMember({"none", "matte", "shadow"}))
+      ->type_name("none|matte|shadow")
       ->capture_default_str();
+}
+
+std::optional<GroundKind> choose_ground(const BackgroundFlags& flags, const std::string& integrator) {
+  if (flags.ground == "none") return std::nullopt;
+  if (flags.ground == "matte") return GroundKind::matte;
+  if (!flags.transparent && flags.background.empty())
+    throw Error(ErrorKind::usage, {}, "--ground shadow",
+                "falls on what is behind the scene; add --transparent or --background");
+  if (integrator != "path") throw Error(ErrorKind::usage, {}, "--ground shadow", "needs --integrator path");
+  return GroundKind::shadow;
 }
 
 Background choose_background(const BackgroundFlags& flags, const std::vector<std::string>& outputs) {

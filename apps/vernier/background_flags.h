@@ -2,9 +2,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "vernier/ground.h"
 #include "vernier/settings.h"
 
 namespace vernier::apps {
@@ -24,5 +26,9 @@ void add_background_flags(CLI::App& command, BackgroundFlags& flags);
 
 /// What they ask for, with a picture that can be read, for outputs that can hold it. Throws Error.
 Background choose_background(const BackgroundFlags& flags, const std::vector<std::string>& outputs);
+
+/// The ground asked for. Throws Error(usage) on a shadow with nothing behind it to fall on, or for an
+/// integrator that casts none.
+std::optional<GroundKind> choose_ground(const BackgroundFlags& flags, const std::string& integrator);
 
 }  // namespace vernier::apps

@@ -22,8 +22,8 @@ struct CameraFlags {
   std::optional<float> ortho_height;  ///< metres
   bool panorama = false;
   LensFlags lens;
-  bool has_ground = false;  ///< put under the scene, which the camera is fitted without
-  bool turns = false;       ///< the scene is seen from all around
+  std::optional<GroundKind> ground;  ///< put under the scene, which the camera is fitted without
+  bool turns = false;                ///< the scene is seen from all around
 
   /// Whether the camera is to stand where the scene fits the picture.
   bool orbits() const { return azimuth || elevation || !fit.empty(); }

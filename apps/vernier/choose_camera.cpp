@@ -118,7 +118,7 @@ void note_fitting(const CameraFlags& flags, const Subject& subject, NoticeLog& l
     log.add({Notice::Severity::info,
              {},
              "the scene has no camera; using one fitted to it, --azimuth and --elevation go around it"});
-  const size_t grounds = flags.has_ground ? 1 : 0;
+  const size_t grounds = flags.ground ? 1 : 0;
   if (subject.left_out() > grounds)
     log.add({Notice::Severity::info,
              {},

@@ -57,14 +57,25 @@ struct Merged {
     }
     require_same_render(path, checkpoint.identity, identity);
     if (more.film.width() != result->film.width() || more.film.height() != result->film.height() ||
-        more.film.has_alpha() != result->film.has_alpha())
+        more.film.has_alpha() != result->film.has_alpha() || more.light.size() != result->light.size())
       throw Error(ErrorKind::input, path, {}, "is damaged: its picture is not of the size that it says");
     result->film.merge(more.film);
+    for (size_t i = 0; i < more.light.size(); ++i) result->light[i].film.merge(more.light[i].film);
     result->samples += more.samples;
     result->seconds += more.seconds;
     result->bad_samples += more.bad_samples;
   }
 };
+
+/// Of a crop in its picture, as a render's identity tells it.
+PicturePlace place_of(const RenderIdentity& identity) {
+  const std::map<std::string, std::string> render(identity.begin(), identity.end());
+  const auto crop = render.find("crop"), size = render.find("size");
+  if (crop == render.end() || size == render.end()) return {};
+  const PixelRect rect = parse_pixel_rect(crop->second);
+  const PixelSize full = parse_pixel_size(size->second);
+  return {rect.x, rect.y, full.width, full.height};
+}
 
 Metadata merged_metadata(const Merged& merged, const std::string& command_line) {
   Metadata metadata = result_metadata(*merged.result);
@@ -102,7 +113,8 @@ ExitCode run_merge(const MergeFlags& flags, const std::string& command_line) {
   RenderResult& result = *merged.result;
   if (result.film.has_alpha()) require_alpha_fits(flags.output);
   result.error = estimate_error(result.film);
-  const LayeredImage picture = with_film_layers(result.film, chosen);
+  LayeredImage picture = with_film_layers(result, chosen);
+  picture.place = place_of(merged.identity);
   write_picture(flags.output, picture, merged_metadata(merged, command_line), display, flags.exr);
   if (!flags.quiet)
     fmt::print("{}\n",

@@ -39,7 +39,7 @@ PosedScene::PosedScene(const RenderFlags& flags, const RunPlan& plan, SceneDescr
     chosen_ = {{std::nullopt, ""}};  // one that is fitted stands for all that there are
   else
     chosen_ = all_cameras(cameras, log);
-  if (flags.camera.has_ground) add_ground(description);
+  if (flags.camera.ground) add_ground(description, *flags.camera.ground);
   Stopwatch watch;
   scene_ = build_scene(std::move(description), {flags.accelerator});
   report_.build_seconds = watch.lap();

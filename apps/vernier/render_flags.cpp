@@ -10,6 +10,7 @@
 #include "apps/vernier/display_flags.h"
 #include "apps/vernier/exr_flags.h"
 #include "apps/vernier/flags.h"
+#include "apps/vernier/light_flags.h"
 #include "core/base/quantities.h"
 #include "core/denoise/denoise.h"
 #include "integrators/render/layers.h"
@@ -80,6 +81,7 @@ void add_output_flags(CLI::App& command, RenderFlags& flags) {
       .add_option("--aov,--layers", flags.layers,
                   "layers of the .exr beside its colour: error,albedo,...; 'help' lists them, 'all' is all")
       ->type_name("LIST");
+  add_light_groups_flag(command, flags.light_groups);
   command
       .add_option("--denoise", flags.denoise,
                   "filter the noise out before writing; 'help' lists the filters (docs/denoise.md)")
@@ -116,8 +118,9 @@ void print_accelerators(bool all) {
 /// The table as --aov takes it: name, channels in the file, meaning.
 void print_layers() {
   for (const Layer& layer : layers())
-    fmt::print("{:<10} {}\n{:10} channels {}\n", layer.name, layer.description, "",
+    fmt::print("{:<21} {}\n{:21} channels {}\n", layer.name, layer.description, "",
                fmt::join(layer.channels.begin(), layer.channels.begin() + layer.channel_count(), ", "));
+  fmt::print("'light' is all the light of one way, 'all' everything else\n");
 }
 
 void print_filters() {

@@ -39,7 +39,8 @@ struct RenderFlags {
   SurroundingsFlags surroundings;
   BackgroundFlags background;
 
-  std::string layers;   ///< --aov; empty: none
+  std::string layers;  ///< --aov; empty: none
+  std::vector<std::string> light_groups;
   std::string denoise;  ///< filter; empty: none
   DisplayOptions display;
   ExrOptions exr;

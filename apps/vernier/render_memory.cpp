@@ -13,7 +13,8 @@ namespace {
 constexpr size_t color = 3 * sizeof(float);  // an Image of three channels
 
 size_t session_bytes(const MemoryUse& use) {
-  return RenderState::bytes_per_pixel(use.adaptive, use.alpha) + (use.background_picture ? color : 0);
+  return RenderState::bytes_per_pixel(use.adaptive, use.alpha, use.light_parts) +
+         (use.background_picture ? color : 0);
 }
 
 size_t while_rendering(const MemoryUse& use) {

@@ -11,6 +11,7 @@ struct MemoryUse {
   bool alpha = false;
   bool background_picture = false;
   int layer_channels = 0;     ///< beside the color's three, and alpha
+  size_t light_parts = 0;     ///< kept apart while rendering
   bool error_layers = false;  ///< whether some layer needs error_layers()
   bool denoise = false;
   bool display = false;  ///< whether a .png or .jpg is written

@@ -13,6 +13,7 @@
 #include "apps/vernier/display_flags.h"
 #include "apps/vernier/exr_flags.h"
 #include "apps/vernier/flags.h"
+#include "apps/vernier/light_flags.h"
 #include "apps/vernier/picture_output.h"
 #include "apps/vernier/stopwatch.h"
 #include "core/base/atomic_file.h"
@@ -28,11 +29,14 @@ namespace {
 /// Only OpenEXR holds more than a picture's colour. Denoising brings the layers that it uses.
 std::string choose_layers(const RenderFlags& flags) {
   const auto is_display = [&](const auto& output) { return is_display_output(output, flags.run.format); };
-  if (!flags.layers.empty() && std::all_of(flags.outputs.begin(), flags.outputs.end(), is_display))
-    throw Error(ErrorKind::usage, {}, "--aov",
+  const bool has_layers = !flags.layers.empty() || !flags.light_groups.empty();
+  if (has_layers && std::all_of(flags.outputs.begin(), flags.outputs.end(), is_display))
+    throw Error(ErrorKind::usage, {}, flags.layers.empty() ? "--light-groups" : "--aov",
                 "only an .exr can hold layers; add -o FILE.exr, which may be given beside other outputs");
   std::string list = flags.layers;
-  if (!flags.denoise.empty()) list += (list.empty() ? "" : ",") + std::string(layers_for_denoising);
+  const auto add = [&](std::string_view more) { list += (list.empty() ? "" : ",") + std::string(more); };
+  if (!flags.light_groups.empty()) add("light_groups");
+  if (!flags.denoise.empty()) add(layers_for_denoising);
   return list;
 }
 
@@ -134,6 +138,11 @@ MemoryUse memory_use(const RenderRequest& request) {
     use.layer_channels += layer.channel_count();
     use.error_layers = use.error_layers || layer.need == LayerNeed::error;
   }
+  const LightSplit& split = request.settings.light_split;
+  use.light_parts = split.ways.size() + (split.groups.empty() ? 0 : split.groups.size() + 1);
+  // Groups have channels that no table lists, and every part may have an error.
+  use.layer_channels += 3 * int(split.groups.empty() ? 0 : split.groups.size() + 1);
+  if (use.error_layers) use.layer_channels += 3 * int(use.light_parts);
   use.denoise = request.denoiser != nullptr;
   use.display = has_display_output(flags);
   use.report = !flags.report.empty();
@@ -167,7 +176,7 @@ RenderRequest check_render_flags(const RenderFlags& given) {
   RenderRequest request;
   request.flags = with_draft(given);
   const RenderFlags& flags = request.flags;
-  request.flags.camera.has_ground = flags.background.ground == "matte";
+  request.flags.camera.ground = choose_ground(flags.background, flags.integrator);
   request.flags.camera.turns = flags.run.turntable.has_value();
   if (!flags.accelerator.empty()) find_by_name(accelerators(), "accelerator", flags.accelerator);
   request.settings = make_settings(flags);
@@ -176,6 +185,7 @@ RenderRequest check_render_flags(const RenderFlags& given) {
   request.layer_list = choose_layers(flags);
   request.layers = find_layers(request.layer_list);
   check_exr_flags(flags.exr, named_outputs(flags), !request.layers.empty());
+  request.settings.light_split = choose_light_split(flags.light_groups, request.layers);
   if (!flags.denoise.empty()) request.denoiser = &find_denoiser(flags.denoise);
   if (request.settings.width > 0) check_picture_size(request.settings, memory_use(request));
   request.display = choose_display(flags);

@@ -52,7 +52,7 @@ uint64_t trace_paths(const Scene& scene, const validation::CrossCheck& check, co
     parallel_for(size_t(settings.height), [&](size_t y) {
       for (int x = 0; x < settings.width && check.rays() < rays; ++x) {
         CameraSample sample = camera_samples.get({x, int(y), 0, index});
-        integrator->estimate(scene, sample.ray, sample.sampler, 0);
+        integrator->estimate(scene, sample.ray, sample.sampler, {});
       }
     });
     paths += uint64_t(settings.width) * uint64_t(settings.height);

@@ -50,21 +50,28 @@ OIIO::ImageInput::unique_ptr open_file(const std::string& path, const ImageLimit
   return input;
 }
 
+struct PlacedImage {
+  Image image;
+  PicturePlace place;
+};
+
 // The picture that a file means. OpenEXR's data window may cover only part of it, or more than it; other
 // formats' offsets are page positions and mean nothing here.
-Image read_picture(OIIO::ImageInput& input, const std::string& path) {
+PlacedImage read_picture(OIIO::ImageInput& input, const std::string& path) {
   const OIIO::ImageSpec spec = input.spec();
   Image stored(spec.width, spec.height, spec.nchannels);
   if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, stored.values.data()))
     throw input_error(path, fmt::format("cannot decode image, it is damaged: {}", input.geterror()));
-  if (std::strcmp(input.format_name(), "openexr") != 0 || spec.roi() == spec.roi_full()) return stored;
-  Image picture(spec.full_width, spec.full_height, spec.nchannels);
-  const int left = spec.x - spec.full_x, top = spec.y - spec.full_y;
-  const int begin = std::max(0, left), end = std::min(picture.width, left + stored.width);
-  for (int y = std::max(0, top); y < std::min(picture.height, top + stored.height) && begin < end; ++y)
-    std::copy_n(stored.pixel(begin - left, y - top), size_t(end - begin) * picture.channels,
-                picture.pixel(begin, y));
-  return picture;
+  if (std::strcmp(input.format_name(), "openexr") != 0 || spec.roi() == spec.roi_full()) return {stored, {}};
+  const OIIO::ROI shown = OIIO::roi_intersection(spec.roi(), spec.roi_full());
+  if (shown.npixels() == 0) return {Image(spec.full_width, spec.full_height, spec.nchannels), {}};
+  Image part(shown.width(), shown.height(), spec.nchannels);
+  for (int y = 0; y < part.height; ++y)
+    std::copy_n(stored.pixel(shown.xbegin - spec.x, shown.ybegin - spec.y + y),
+                size_t(part.width) * part.channels, part.pixel(0, y));
+  if (shown == spec.roi_full()) return {std::move(part), {}};
+  return {std::move(part),
+          {shown.xbegin - spec.full_x, shown.ybegin - spec.full_y, spec.full_width, spec.full_height}};
 }
 
 // Header texts that a picture may carry on to another file: not the layout of this one.
@@ -145,11 +152,21 @@ LayeredImage read_layers(const std::string& path, const ImageLimits& limits) {
   }
   const auto input = open_file(path, limits);
   const OIIO::ImageSpec spec = input->spec();
-  result.image = read_picture(*input, path);
+  PlacedImage picture = read_picture(*input, path);
+  result.image = std::move(picture.image);
+  result.place = picture.place;
   result.channel_names = spec.channelnames;
   result.metadata = texts(spec);
   result.linear = spec.format.is_floating_point();
   return result;
+}
+
+Image whole_picture(const Image& part, const PicturePlace& place) {
+  if (place.full_width == 0) return part;
+  Image whole(place.full_width, place.full_height, part.channels);
+  for (int y = 0; y < part.height; ++y)
+    std::copy_n(part.pixel(0, y), size_t(part.width) * part.channels, whole.pixel(place.x, place.y + y));
+  return whole;
 }
 
 std::optional<Metadata> read_image_texts(const std::string& path) {
@@ -168,7 +185,8 @@ std::optional<Metadata> read_image_texts(const std::string& path) {
 }
 
 Image read_image(const std::string& path, const ImageLimits& limits) {
-  return read_layers(path, limits).rgb();
+  const LayeredImage read = read_layers(path, limits);
+  return whole_picture(read.rgb(), read.place);
 }
 
 }  // namespace vernier

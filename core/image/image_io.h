@@ -26,8 +26,12 @@ struct ImageLimits {
 /// OpenEXR's data window the picture is black. Throws Error(input) naming the file.
 Image read_image(const std::string& path, const ImageLimits& limits = {});
 
-/// As read_image, with every channel of the file's first part.
+/// As read_image, with every channel of the file's first part. Where an OpenEXR file holds a part of a
+/// picture, it is that part, and `place` says where it lies.
 LayeredImage read_layers(const std::string& path, const ImageLimits& limits = {});
+
+/// A part of a picture in its place, and black around it.
+Image whole_picture(const Image& part, const PicturePlace& place);
 
 /// The texts in the header of an image file, whose pixels are not read; empty when it is none. JPEG files
 /// hold them as lines of their description.
@@ -55,6 +59,7 @@ inline constexpr float largest_half = 65504;
 struct ExrOptions {
   bool half = false;  ///< R, G, B and A in 16 bits, values limited to +-largest_half; other channels keep 32
   std::string compression = "zip";  ///< by OpenImageIO's name, with a level after a colon where it has one
+  PicturePlace place{};             ///< the data window in the display window
 };
 
 /// Writes float channels as OpenEXR. `channel_names` has image.channels entries ("R", "G", "B", "albedo.R",

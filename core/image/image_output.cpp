@@ -108,6 +108,12 @@ OIIO::ImageSpec exr_spec(const std::string& path, const Image& image,
   OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeFloat);
   spec.channelnames = channel_names;
   spec.alpha_channel = spec.channelindex("A");
+  if (const PicturePlace& place = options.place; place.full_width > 0) {
+    spec.x = place.x;
+    spec.y = place.y;
+    spec.full_width = place.full_width;
+    spec.full_height = place.full_height;
+  }
   spec.attribute("compression", options.compression);
   if (options.half)
     for (const auto& name : channel_names)

@@ -50,12 +50,19 @@ inline float linear_to_srgb(float linear) {
 /// Text and numbers stored in an image file's header, by attribute name.
 using Metadata = std::map<std::string, std::string>;
 
+/// Where a picture lies in a larger one that it is a part of.
+struct PicturePlace {
+  int x = 0, y = 0;                     ///< of its upper left pixel
+  int full_width = 0, full_height = 0;  ///< of the larger one; 0: there is none
+};
+
 /// All channels of a file and the texts in its header.
 struct VERNIER_API LayeredImage {
   Image image;
   std::vector<std::string> channel_names;  ///< as many as image.channels
   Metadata metadata;
   bool linear = false;  ///< the file stores floating-point numbers, not display values in [0, 1]
+  PicturePlace place{};
 
   /// R, G and B, else the first three channels, else grey repeated.
   Image rgb() const;

@@ -38,6 +38,10 @@ struct MaterialDescription {
   float alpha_cutoff = 0.5f;
   bool double_sided = false;
   bool unlit = false;  ///< KHR_materials_unlit
+  /// Of level surfaces: where RenderSettings::background is not the surroundings, the camera sees the
+  /// background through them, darkened by the part of the light from above that something keeps from
+  /// them. To all other light they are what else they are.
+  bool catches_shadow = false;
 
   float ior = 1.5f;             ///< KHR_materials_ior; 0 stands for an infinite index: Fresnel 1 everywhere
   float specular = 1;           ///< KHR_materials_specular

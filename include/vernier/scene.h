@@ -39,6 +39,7 @@ struct InstanceDescription {
   Transform to_world;
   /// Instances of one number are parts of one object, and may enclose a volume together; none: its own.
   std::optional<uint32_t> object{};
+  std::string asset{};  ///< name of what it belongs to as a whole: of the node at the top of its tree
 };
 
 /// Looks along its local -z, +y up. A panorama sees all around as EnvironmentDescription pictures it, in

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "vernier/scene.h"
 
@@ -62,6 +63,21 @@ struct PixelFilter {
   float width = 1;  ///< pixels from one end to the other, 0.1 to 16
 };
 
+/// Lights whose part of a picture is kept apart.
+struct LightGroup {
+  std::string name;
+  /// Names of punctual lights, of nodes or materials that emit, or "environment".
+  std::vector<std::string> lights;
+};
+
+/// What parts of a picture's light are kept apart, each with its own error; the integrator must be "path".
+struct LightSplit {
+  /// By the way light comes to the camera: names of layers, "diffuse_direct".
+  std::vector<std::string> ways;
+  /// By its source; light of two groups goes to the first, and that of none to one more, "rest".
+  std::vector<LightGroup> groups;
+};
+
 /// All that a picture depends on beside its scene, and when to stop.
 struct VERNIER_API RenderSettings {
   int width = 0, height = 0;  ///< of the full picture, pixels
@@ -71,6 +87,7 @@ struct VERNIER_API RenderSettings {
   Background background;
   std::string integrator = "path";
   IntegratorOptions integrator_options;
+  LightSplit light_split;
   bool adaptive = true;  ///< spend samples where they lower the picture's error
   uint64_t seed = 0;
   RenderLimits limits;

@@ -14,7 +14,7 @@ namespace {
 /// Scene-linear, and without values that a film refuses.
 Image read_background(const std::string& file) {
   const LayeredImage read = read_layers(file);
-  Image picture = read.rgb();
+  Image picture = whole_picture(read.rgb(), read.place);
   for (float& value : picture.values) {
     if (!read.linear) value = srgb_to_linear(value);
     value = std::isfinite(value) ? std::max(value, 0.f) : 0.f;

@@ -26,7 +26,7 @@ static_assert(std::endian::native == std::endian::little, "checkpoints are littl
 static_assert(sizeof(RenderResult::Look) == 6 * sizeof(double));
 static_assert(sizeof(TileLight) == 10 * sizeof(float));
 
-constexpr uint32_t format = 3;
+constexpr uint32_t format = 4;
 constexpr size_t fingerprint_length = 32;
 constexpr uint32_t longest_header = 1 << 20;
 
@@ -62,6 +62,7 @@ void for_each_array(State& state, Plan& plan_counts, const Visit& visit) {
   visit("parts", bytes_of(state.parts));
   visit("looks", bytes_of(state.so_far.convergence));
   visit("bad samples", bytes_of(state.so_far.bad_sample_examples));
+  for (auto& part : state.so_far.light) visit(part.layer.c_str(), part.film.bytes());
 }
 
 Json header_of(const RenderIdentity& identity, const RenderState& state) {
@@ -72,6 +73,7 @@ Json header_of(const RenderIdentity& identity, const RenderState& state) {
               {"height", so_far.film.height()},
               {"adaptive", !state.guides[0].bytes().empty()},
               {"has_alpha", so_far.film.has_alpha()},
+              {"light_layers", Json::array()},
               {"done", state.done},
               {"guiding", state.drawn.guiding},
               {"looked_at", state.looked_at},
@@ -81,6 +83,7 @@ Json header_of(const RenderIdentity& identity, const RenderState& state) {
               {"rays", {so_far.rays.camera, so_far.rays.bounce, so_far.rays.shadow}},
               {"bad_samples", so_far.bad_samples},
               {"arrays", Json::array()}};
+  for (const LightFilm& part : so_far.light) header["light_layers"].push_back(part.layer);
   for (const auto& [name, value] : identity) header["render"].push_back(Json::array({name, value}));
   return header;
 }
@@ -162,6 +165,7 @@ std::shared_ptr<RenderState> allocate_state(const Reader& reader, const Json& he
   if (width == 0 || height == 0) reader.damaged("its picture has no pixels");
   const bool adaptive = header.at("adaptive").get<bool>();
   const bool has_alpha = header.at("has_alpha").get<bool>();
+  const auto light_layers = header.at("light_layers").get<std::vector<std::string>>();
   const Json& pass_header = header.at("pass");
   const uint32_t done = uint32_t(whole_number(reader, header.at("done"), "done", RenderState::most_samples));
   pass.width = int(width);
@@ -177,16 +181,17 @@ std::shared_ptr<RenderState> allocate_state(const Reader& reader, const Json& he
   const size_t pixels = width * height;
   const size_t tiles = RenderState::tile_count(int(width), int(height));
   const bool uneven = pass.size > 0 && bytes(6) > 0;
-  const std::array<size_t, 10> expected{pixels * Film::bytes_per_pixel(),
-                                        has_alpha ? pixels * Film::alpha_bytes_per_pixel() : 0,
-                                        adaptive ? pixels * SampleGuide::bytes_per_pixel() : 0,
-                                        adaptive ? pixels * SampleGuide::bytes_per_pixel() : 0,
-                                        adaptive ? pixels * Film::halves * sizeof(uint32_t) : 0,
-                                        tiles * sizeof(TileLight),
-                                        uneven ? pixels * Film::halves * sizeof(uint16_t) : 0,
-                                        pass.size > 0 ? tiles * sizeof(uint32_t) : 0,
-                                        bytes(8) / sizeof(RenderResult::Look) * sizeof(RenderResult::Look),
-                                        bytes(9) / sizeof(BadSample) * sizeof(BadSample)};
+  std::vector<size_t> expected{pixels * Film::bytes_per_pixel(),
+                               has_alpha ? pixels * Film::alpha_bytes_per_pixel() : 0,
+                               adaptive ? pixels * SampleGuide::bytes_per_pixel() : 0,
+                               adaptive ? pixels * SampleGuide::bytes_per_pixel() : 0,
+                               adaptive ? pixels * Film::halves * sizeof(uint32_t) : 0,
+                               tiles * sizeof(TileLight),
+                               uneven ? pixels * Film::halves * sizeof(uint16_t) : 0,
+                               pass.size > 0 ? tiles * sizeof(uint32_t) : 0,
+                               bytes(8) / sizeof(RenderResult::Look) * sizeof(RenderResult::Look),
+                               bytes(9) / sizeof(BadSample) * sizeof(BadSample)};
+  expected.resize(expected.size() + light_layers.size(), pixels * Film::bytes_per_pixel());
   uintmax_t total = 0;
   for (size_t i = 0; i < expected.size(); ++i) {
     if (bytes(i) != expected[i])
@@ -197,7 +202,7 @@ std::shared_ptr<RenderState> allocate_state(const Reader& reader, const Json& he
   if (arrays.size() != expected.size() || total != reader.left())
     reader.damaged(fmt::format("{} bytes follow its header, expected {}", reader.left(), total));
 
-  auto state = std::make_shared<RenderState>(int(width), int(height), adaptive, has_alpha);
+  auto state = std::make_shared<RenderState>(int(width), int(height), adaptive, has_alpha, light_layers);
   state->done = done;
   for (size_t half = 0; half < Film::halves; ++half)
     state->drawn.guiding[half] =

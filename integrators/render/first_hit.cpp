@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrators/render/first_hit.h"
 
-#include "scene/segment.h"
-
 namespace vernier {
 
 constexpr uint32_t samples_looked_at = 8;  // of each half
@@ -11,14 +9,18 @@ FirstHits::FirstHits(const Scene& scene, const Camera& camera, const RenderSetti
                      const Film& film)
     : scene_(scene), camera_(camera), options_(options), film_(film), camera_samples_(camera, options) {}
 
+FirstHits::Met FirstHits::sample(int x, int y, int half, uint32_t i) const {
+  const Ray ray = camera_samples_.get({options_.crop.x + x, options_.crop.y + y, half, i}).ray;
+  return {ray, intersect_from_camera(scene_, camera_segment(scene_, ray))};
+}
+
 FirstHitMean FirstHits::mean(int x, int y) const {
   FirstHitMean sum;
   uint32_t count = 0;
   for (int half = 0; half < Film::halves; ++half)
     for (uint32_t i = 0; i < std::min(samples_looked_at, film_.samples(x, y, half)); ++i) {
-      const Ray ray = camera_samples_.get({options_.crop.x + x, options_.crop.y + y, half, i}).ray;
       ++count;
-      const auto hit = intersect_from_camera(scene_, camera_segment(scene_, ray));
+      const auto [ray, hit] = sample(x, y, half, i);
       if (!hit) continue;
       const Shading shading = shade(scene_, *hit, -ray.direction);
       sum.albedo += shading.albedo();
@@ -30,11 +32,24 @@ FirstHitMean FirstHits::mean(int x, int y) const {
   return {sum.albedo * part, sum.normal * part, sum.coverage * part};
 }
 
+MetInstances FirstHits::met(int x, int y) const {
+  MetInstances met;
+  for (int half = 0; half < Film::halves; ++half)
+    for (uint32_t i = 0; i < std::min(MetInstances::most_samples / Film::halves, film_.samples(x, y, half));
+         ++i) {
+      ++met.samples;
+      if (const auto hit = sample(x, y, half, i).hit) met.instances[met.count++] = hit->instance;
+    }
+  return met;
+}
+
 std::optional<FirstHit> FirstHits::at_center(int x, int y) const {
   const Ray ray = camera_.ray({float(options_.crop.x + x) + 0.5f, float(options_.crop.y + y) + 0.5f});
   const auto hit = intersect_from_camera(scene_, camera_segment(scene_, ray));
   if (!hit) return std::nullopt;
-  return FirstHit{camera_.depth(ray, hit->t), hit->position, hit->instance};
+  const SceneGeometry& geometry = scene_.geometry();
+  return FirstHit{camera_.depth(ray, hit->t), hit->position, hit->instance,
+                  geometry.material_of(hit->instance), geometry.attributes(*hit).uv[0]};
 }
 
 }  // namespace vernier

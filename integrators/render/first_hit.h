@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
 #include "core/film/film.h"
 #include "integrators/render/camera_sample.h"
 #include "integrators/render/render.h"
+#include "scene/segment.h"
 
 namespace vernier {
 
@@ -22,6 +24,17 @@ struct FirstHit {
   float depth = 0;    ///< metres along the camera's axis; from a panorama, along the ray
   Vec3f position;     ///< world
   uint32_t instance;  ///< number in the scene
+  uint32_t material;  ///< number in the scene
+  Vec2f uv;           ///< of the first texture coordinates that the material uses; zero where it uses none
+};
+
+/// The instances that a pixel's camera samples meet.
+struct MetInstances {
+  static constexpr uint32_t most_samples = 64;
+
+  std::array<uint32_t, most_samples> instances;  ///< the first `count` are set
+  uint32_t count = 0;
+  uint32_t samples = 0;  ///< asked, those included that meet nothing
 };
 
 /// Looks at a picture's first hits again after it has been rendered, so that rendering never pays for them.
@@ -33,9 +46,18 @@ class FirstHits {
   /// Over the pixel's own camera samples, of each half at most the first eight, so that noise of edges is
   /// that of the picture. x and y are in the film.
   FirstHitMean mean(int x, int y) const;
+  /// The same samples, of each half at most the first 32.
+  MetInstances met(int x, int y) const;
   std::optional<FirstHit> at_center(int x, int y) const;
 
  private:
+  /// What sample i of a half meets.
+  struct Met {
+    Ray ray;
+    std::optional<Interaction> hit;
+  };
+  Met sample(int x, int y, int half, uint32_t i) const;
+
   const Scene& scene_;
   const Camera& camera_;
   const RenderSettings& options_;

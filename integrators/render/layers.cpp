@@ -21,6 +21,11 @@ void put(const V& v, float* out) {
   for (int c = 0; c < 3; ++c) out[c] = float(v[c]);
 }
 
+template <LightWay way>
+void put_way(P pixel, float* out) {
+  put(pixel.ways[size_t(way)]->pixel(pixel.x, pixel.y), out);
+}
+
 Vec3d square_root(const Vec3d& v) { return {std::sqrt(v.x), std::sqrt(v.y), std::sqrt(v.z)}; }
 
 constexpr Layer table[] = {
@@ -50,6 +55,51 @@ constexpr Layer table[] = {
          put(square_root(p.film.half_mean_variance(p.x, p.y, half)), out + 3 * Film::halves);
        }
      }},
+    {"emission",
+     "light that the surface that the camera sees emits",
+     {"emission.R", "emission.G", "emission.B"},
+     LayerNeed::light,
+     put_way<LightWay::emission>},
+    {"background",
+     "what lies behind all surfaces",
+     {"background.R", "background.G", "background.B"},
+     LayerNeed::light,
+     put_way<LightWay::background>},
+    {"diffuse_direct",
+     "light of sources that the body of the first surface scatters",
+     {"diffuse_direct.R", "diffuse_direct.G", "diffuse_direct.B"},
+     LayerNeed::light,
+     put_way<LightWay::diffuse_direct>},
+    {"diffuse_indirect",
+     "light of other surfaces that the body of the first surface scatters",
+     {"diffuse_indirect.R", "diffuse_indirect.G", "diffuse_indirect.B"},
+     LayerNeed::light,
+     put_way<LightWay::diffuse_indirect>},
+    {"glossy_direct",
+     "light of sources that the first surface mirrors",
+     {"glossy_direct.R", "glossy_direct.G", "glossy_direct.B"},
+     LayerNeed::light,
+     put_way<LightWay::glossy_direct>},
+    {"glossy_indirect",
+     "light of other surfaces that the first surface mirrors",
+     {"glossy_indirect.R", "glossy_indirect.G", "glossy_indirect.B"},
+     LayerNeed::light,
+     put_way<LightWay::glossy_indirect>},
+    {"transmission_direct",
+     "light of sources through a clear first surface",
+     {"transmission_direct.R", "transmission_direct.G", "transmission_direct.B"},
+     LayerNeed::light,
+     put_way<LightWay::transmission_direct>},
+    {"transmission_indirect",
+     "light of other surfaces through a clear first surface",
+     {"transmission_indirect.R", "transmission_indirect.G", "transmission_indirect.B"},
+     LayerNeed::light,
+     put_way<LightWay::transmission_indirect>},
+    {"light_groups",
+     "light of each of --light-groups, light_NAME, and of all other lights, light_rest",
+     {},
+     LayerNeed::light,
+     [](P, float*) {}},
     {"albedo",
      "fraction of light that the first surface scatters toward the camera, mean over samples",
      {"albedo.R", "albedo.G", "albedo.B"},
@@ -82,14 +132,98 @@ constexpr Layer table[] = {
      {"id"},
      LayerNeed::center_hit,
      [](P p, float* out) { out[0] = p.center_hit ? float(p.center_hit->instance + 1) : 0; }},
+    {"material",
+     "number, from 1, of the material that the pixel's centre shows; zero where that is none",
+     {"material"},
+     LayerNeed::center_hit,
+     [](P p, float* out) { out[0] = p.center_hit ? float(p.center_hit->material + 1) : 0; }},
+    {"uv",
+     "texture coordinates that the pixel's centre shows, the first that its material uses; zero without any",
+     {"UV.U", "UV.V"},
+     LayerNeed::center_hit,
+     [](P p, float* out) {
+       const Vec2f uv = p.center_hit ? p.center_hit->uv : Vec2f(0, 0);
+       out[0] = uv.x, out[1] = uv.y;
+     }},
+    {"crypto_object",
+     "Cryptomatte by the names of nodes",
+     {"CryptoObject00.r", "CryptoObject00.g", "CryptoObject00.b", "CryptoObject00.a", "CryptoObject01.r",
+      "CryptoObject01.g", "CryptoObject01.b", "CryptoObject01.a", "CryptoObject02.r", "CryptoObject02.g",
+      "CryptoObject02.b", "CryptoObject02.a"},
+     LayerNeed::mattes,
+     [](P p, float* out) { p.ids->write(p.met, &SceneNames::Instance::object, out); }},
+    {"crypto_material",
+     "Cryptomatte by the names of materials",
+     {"CryptoMaterial00.r", "CryptoMaterial00.g", "CryptoMaterial00.b", "CryptoMaterial00.a",
+      "CryptoMaterial01.r", "CryptoMaterial01.g", "CryptoMaterial01.b", "CryptoMaterial01.a",
+      "CryptoMaterial02.r", "CryptoMaterial02.g", "CryptoMaterial02.b", "CryptoMaterial02.a"},
+     LayerNeed::mattes,
+     [](P p, float* out) { p.ids->write(p.met, &SceneNames::Instance::material, out); }},
+    {"crypto_asset",
+     "Cryptomatte by the names of the nodes at the top, of which others are parts",
+     {"CryptoAsset00.r", "CryptoAsset00.g", "CryptoAsset00.b", "CryptoAsset00.a", "CryptoAsset01.r",
+      "CryptoAsset01.g", "CryptoAsset01.b", "CryptoAsset01.a", "CryptoAsset02.r", "CryptoAsset02.g",
+      "CryptoAsset02.b", "CryptoAsset02.a"},
+     LayerNeed::mattes,
+     [](P p, float* out) { p.ids->write(p.met, &SceneNames::Instance::asset, out); }},
 };
 
 bool any_needs(std::span<const Layer> chosen, LayerNeed need) {
   return std::any_of(chosen.begin(), chosen.end(), [need](const Layer& l) { return l.need == need; });
 }
 
-/// `first_hits` may be null when no layer needs them.
-LayeredImage assemble(const Film& film, std::span<const Layer> chosen, const FirstHits* first_hits) {
+/// What the header says of the mattes among the layers.
+Metadata matte_metadata(std::span<const Layer> chosen, const CryptomatteIds& ids,
+                        const LayeredImage& picture) {
+  Metadata metadata;
+  for (const Layer& layer : chosen) {
+    if (layer.need != LayerNeed::mattes) continue;
+    const auto first =
+        std::find(picture.channel_names.begin(), picture.channel_names.end(), layer.channels[0]);
+    const std::string_view name = layer.channels[0].substr(0, layer.channels[0].size() - 4);  // "00.r"
+    metadata.merge(ids.metadata(name, picture.image, int(first - picture.channel_names.begin())));
+  }
+  return metadata;
+}
+
+bool is_group(const LightFilm& part) { return part.layer.starts_with("light_"); }
+
+bool is_chosen(std::span<const Layer> chosen, std::string_view name) {
+  return std::any_of(chosen.begin(), chosen.end(), [&](const Layer& layer) { return layer.name == name; });
+}
+
+/// The films of the ways of light; null where they are not kept apart, which no chosen layer may need.
+std::array<const Film*, light_way_count> ways_of(const RenderResult& result, std::span<const Layer> chosen) {
+  std::array<const Film*, light_way_count> ways{};
+  for (size_t i = 0; i < light_way_count; ++i) {
+    const std::string_view name = light_way_names()[i];
+    for (const LightFilm& part : result.light)
+      if (part.layer == name) ways[i] = &part.film;
+    if (is_chosen(chosen, name) && !ways[i])
+      throw Error(ErrorKind::usage, {}, std::string(name),
+                  "was not kept apart while rendering; ask for it by RenderSettings::light_split");
+  }
+  return ways;
+}
+
+/// Groups of lights, whose number the table does not know, and the errors of all parts that are shown.
+void append_light(const RenderResult& result, std::span<const Layer> chosen, LayeredImage& picture) {
+  const bool has_groups = is_chosen(chosen, "light_groups"), has_errors = is_chosen(chosen, "error");
+  for (const LightFilm& part : result.light) {
+    if (is_group(part) ? !has_groups : !is_chosen(chosen, part.layer)) continue;
+    const auto append = [&](const Image& image, const std::string& name) {
+      picture.append(image, {name + ".R", name + ".G", name + ".B"});
+    };
+    if (is_group(part)) append(part.film.image(), part.layer);
+    if (has_errors) append(error_layers(part.film).standard_error, part.layer + "_error");
+  }
+}
+
+/// Without a scene no layer may need it.
+LayeredImage assemble(const RenderResult& result, std::span<const Layer> chosen, const Scene* scene,
+                      const FirstHits* first_hits) {
+  const Film& film = result.film;
+  const auto ways = ways_of(result, chosen);
   LayeredImage picture;
   picture.linear = true;
   picture.channel_names = {"R", "G", "B"};
@@ -102,16 +236,19 @@ LayeredImage assemble(const Film& film, std::span<const Layer> chosen, const Fir
   const ErrorLayers error = any_needs(chosen, LayerNeed::error) ? error_layers(film) : ErrorLayers{};
   const bool needs_mean = any_needs(chosen, LayerNeed::mean_hit);
   const bool needs_center = any_needs(chosen, LayerNeed::center_hit);
+  const bool needs_mattes = any_needs(chosen, LayerNeed::mattes);
+  const CryptomatteIds ids = needs_mattes ? CryptomatteIds(scene->names()) : CryptomatteIds();
   parallel_for(size_t(film.height()), [&](size_t row) {
     const int y = int(row);
     for (int x = 0; x < film.width(); ++x) {
-      PixelFacts pixel{film, x, y};
+      PixelFacts pixel{film, ways, x, y};
       if (!error.standard_error.empty()) {
         pixel.error = rgb_at(error.standard_error, x, y);
         pixel.unreliable = *error.unreliable.pixel(x, y) > 0;
       }
       if (needs_mean) pixel.mean_hit = first_hits->mean(x, y);
       if (needs_center) pixel.center_hit = first_hits->at_center(x, y);
+      if (needs_mattes) pixel.met = first_hits->met(x, y), pixel.ids = &ids;
       float* out = picture.image.pixel(x, y);
       put(film.pixel(x, y), out);
       out += 3;
@@ -122,6 +259,8 @@ LayeredImage assemble(const Film& film, std::span<const Layer> chosen, const Fir
       }
     }
   });
+  picture.metadata = matte_metadata(chosen, ids, picture);
+  append_light(result, chosen, picture);
   return picture;
 }
 
@@ -135,26 +274,39 @@ std::vector<Layer> find_layers(const std::string& list) {
   for (size_t begin = 0; begin <= list.size();) {
     const size_t end = std::min(list.find(',', begin), list.size());
     const std::string_view name = std::string_view(list).substr(begin, end - begin);
-    names.push_back(name == "all" ? name : find_by_name(table, "layer", name).name);
+    const bool is_several = name == "all" || name == "light";
+    names.push_back(is_several ? name : find_by_name(table, "layer", name).name);
     begin = end + 1;
   }
+  const auto is_asked = [&](const Layer& layer) {
+    const bool is_light = layer.need == LayerNeed::light;
+    const bool is_way = is_light && layer.channel_count() > 0;
+    return std::any_of(names.begin(), names.end(), [&](std::string_view name) {
+      return name == layer.name || (name == "all" && !is_light) || (name == "light" && is_way);
+    });
+  };
   std::vector<Layer> found;
-  for (const Layer& layer : table)
-    if (std::any_of(names.begin(), names.end(), [&](auto n) { return n == layer.name || n == "all"; }))
-      found.push_back(layer);
+  std::copy_if(std::begin(table), std::end(table), std::back_inserter(found), is_asked);
   return found;
 }
 
-LayeredImage with_layers(const Film& film, std::span<const Layer> chosen, const Scene& scene,
+std::vector<std::string> light_ways_of(std::span<const Layer> chosen) {
+  std::vector<std::string> ways;
+  for (const Layer& layer : chosen)
+    if (layer.need == LayerNeed::light && layer.channel_count() > 0) ways.emplace_back(layer.name);
+  return ways;
+}
+
+LayeredImage with_layers(const RenderResult& result, std::span<const Layer> chosen, const Scene& scene,
                          const Camera& camera, const RenderSettings& options) {
-  const FirstHits first_hits(scene, camera, options, film);
-  return assemble(film, chosen, &first_hits);
+  const FirstHits first_hits(scene, camera, options, result.film);
+  return assemble(result, chosen, &scene, &first_hits);
 }
 
 std::vector<Layer> find_film_layers(const std::string& list) {
   std::vector<Layer> found = find_layers(list);
   for (const Layer& layer : found)
-    if (layer.need == LayerNeed::mean_hit || layer.need == LayerNeed::center_hit)
+    if (layer.need > LayerNeed::light)
       throw Error(
           ErrorKind::usage, {}, "--aov",
           fmt::format("{} is looked up in the scene, which is not there; only error, samples, variance "
@@ -163,8 +315,8 @@ std::vector<Layer> find_film_layers(const std::string& list) {
   return found;
 }
 
-LayeredImage with_film_layers(const Film& film, std::span<const Layer> chosen) {
-  return assemble(film, chosen, nullptr);
+LayeredImage with_film_layers(const RenderResult& result, std::span<const Layer> chosen) {
+  return assemble(result, chosen, nullptr, nullptr);
 }
 
 }  // namespace vernier

@@ -9,21 +9,26 @@
 #include <vector>
 
 #include "core/image/image_io.h"
+#include "integrators/render/cryptomatte.h"
 #include "integrators/render/first_hit.h"
 
 namespace vernier {
 
 /// What layers are made from; each layer names what it needs, and nothing else is computed.
-enum class LayerNeed { film, error, mean_hit, center_hit };
+/// From mean_hit on, the scene.
+enum class LayerNeed { film, error, light, mean_hit, center_hit, mattes };
 
 /// What is known of one pixel. Parts that no chosen layer needs are zero.
 struct PixelFacts {
   const Film& film;
-  int x = 0, y = 0;  ///< in the film
+  const std::array<const Film*, light_way_count>& ways;  ///< null: not kept apart
+  int x = 0, y = 0;                                      ///< in the film
   Rgb error{0, 0, 0};
   bool unreliable = false;
   FirstHitMean mean_hit = {};
   std::optional<FirstHit> center_hit = {};
+  MetInstances met = {};
+  const CryptomatteIds* ids = nullptr;
 };
 
 /// One line of the table of layers.
@@ -44,19 +49,25 @@ struct Layer {
 /// All layers that a picture can have beside its colour (integrators/layers.cpp).
 std::span<const Layer> layers();
 
-/// The layers of a list "error,samples", in the table's order, each once; "all" is every one, "" is none.
-/// Throws Error(usage) naming the layer nearest to an unknown one.
+/// The layers of a list "error,samples", in the table's order, each once; "light" is every way of light,
+/// "all" every layer that needs no RenderSettings::light_split, "" is none. Throws Error(usage) naming the
+/// layer nearest to an unknown one.
 std::vector<Layer> find_layers(const std::string& list);
 
-/// The picture of `film`: R, G, B, A if it has alpha, and the channels of the chosen layers. The same values
-/// for any number of threads. `options` are those that it was rendered with.
-LayeredImage with_layers(const Film& film, std::span<const Layer> chosen, const Scene& scene,
+/// The ways of light among the layers, as RenderSettings::light_split takes them.
+std::vector<std::string> light_ways_of(std::span<const Layer> chosen);
+
+/// The picture of `result`: R, G, B, A if it has alpha, the channels of the chosen layers, those of its
+/// groups of lights, and with the layer `error` the errors of its parts of light. The same values for any
+/// number of threads. `options` are those that it was rendered with. Throws Error(usage) about a part of
+/// light that they do not name.
+LayeredImage with_layers(const RenderResult& result, std::span<const Layer> chosen, const Scene& scene,
                          const Camera& camera, const RenderSettings& options);
 
 /// As find_layers, but throws Error(usage) when a layer needs the scene.
 std::vector<Layer> find_film_layers(const std::string& list);
 
 /// As with_layers, without a scene, for layers that find_film_layers gave.
-LayeredImage with_film_layers(const Film& film, std::span<const Layer> chosen);
+LayeredImage with_film_layers(const RenderResult& result, std::span<const Layer> chosen);
 
 }  // namespace vernier

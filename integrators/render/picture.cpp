@@ -78,7 +78,7 @@ std::optional<Image> alpha_of(const LayeredImage& picture) {
 }
 
 LayeredImage color_and_alpha(const LayeredImage& picture) {
-  LayeredImage result{picture.rgb(), {"R", "G", "B"}, {}, picture.linear};
+  LayeredImage result{picture.rgb(), {"R", "G", "B"}, {}, picture.linear, picture.place};
   if (const auto alpha = picture.single("A")) result.append(*alpha, {"A"});
   return result;
 }
@@ -88,10 +88,21 @@ std::optional<Image> coverage_of(const LayeredImage& picture) {
   return coverage ? coverage : alpha_of(picture);
 }
 
+namespace {
+
+/// In the picture's place.
+ExrOptions placed(ExrOptions options, const LayeredImage& picture) {
+  options.place = picture.place;
+  return options;
+}
+
+}  // namespace
+
 void write_picture(const std::string& path, const LayeredImage& picture, Metadata metadata,
                    const DisplayOptions& display, const ExrOptions& exr) {
   if (!is_display_file(path)) {
-    write_exr(path, picture.image, picture.channel_names, metadata, exr);
+    metadata.insert(picture.metadata.begin(), picture.metadata.end());
+    write_exr(path, picture.image, picture.channel_names, metadata, placed(exr, picture));
     return;
   }
   add_display(metadata, display);
@@ -101,7 +112,10 @@ void write_picture(const std::string& path, const LayeredImage& picture, Metadat
 std::vector<unsigned char> encode_picture(const std::string& format, const LayeredImage& picture,
                                           Metadata metadata, const DisplayOptions& display,
                                           const ExrOptions& exr) {
-  if (format == "exr") return encode_exr(picture.image, picture.channel_names, metadata, exr);
+  if (format == "exr") {
+    metadata.insert(picture.metadata.begin(), picture.metadata.end());
+    return encode_exr(picture.image, picture.channel_names, metadata, placed(exr, picture));
+  }
   add_display(metadata, display);
   return encode_image8(format, displayed("picture." + format, picture, display), metadata);
 }

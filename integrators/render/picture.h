@@ -37,9 +37,10 @@ LayeredImage color_and_alpha(const LayeredImage& picture);
 /// without either.
 std::optional<Image> coverage_of(const LayeredImage& picture);
 
-/// `picture` has the color first and then layers, which only .exr files get; alpha is written associated to
-/// .exr and straight to .png. Display files are shown as `display` says; their headers tell how. Throws
-/// Error(output), and Error(usage) as require_alpha_fits().
+/// `picture` has the color first and then layers, which only .exr files get, as they do the texts of its own
+/// header that `metadata` does not have; alpha is written associated to .exr and straight to .png. Display
+/// files are shown as `display` says; their headers tell how. Throws Error(output), and Error(usage) as
+/// require_alpha_fits().
 void write_picture(const std::string& path, const LayeredImage& picture, Metadata metadata,
                    const DisplayOptions& display, const ExrOptions& exr = {});
 /// The bytes of such a file; `format` is "exr", "png" or "jpg".

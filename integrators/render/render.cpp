@@ -45,6 +45,7 @@ class Renderer {
         integrator_(job.integrator),
         options_(job.settings),
         backdrop_(job.backdrop),
+        sorter_(job.sorter.is_empty() ? nullptr : &job.sorter),
         crop_(rendered_part(job.settings)),
         stop_(stop),
         hooks_(std::move(hooks)),
@@ -227,7 +228,8 @@ class Renderer {
     const uint32_t index = draw_index(planned, guides);
     const int full_x = crop_.x + x, full_y = crop_.y + y;
     CameraSample sample = camera_samples_.get({full_x, full_y, half, index});
-    const Estimate estimate = integrator_.estimate(scene_, sample.ray, sample.sampler, spread(x, y, half));
+    const SampleContext context{spread(x, y, half), sorter_};
+    const Estimate estimate = integrator_.estimate(scene_, sample.ray, sample.sampler, context);
     ++totals.samples;
     totals.rays += estimate.rays;
     const FilmSample seen = backdrop_.behind(estimate, full_x, full_y);
@@ -235,10 +237,22 @@ class Renderer {
       ++totals.bad_samples;
       if (totals.bad_sample_examples.size() >= 8 * kept_bad_samples) keep_few(totals.bad_sample_examples);
       totals.bad_sample_examples.push_back({full_x, full_y, half, index});
-    } else if (guides) {
+      return;
+    }
+    if (guides) {
       totals.light.add(estimate);
       if (options_.adaptive) state_.guides[size_t(half)].add(x, y, seen.radiance);
     }
+    if (sorter_) add_parts(planned, estimate, seen);
+  }
+
+  /// What shows behind the scene is a part too.
+  void add_parts(const Planned& planned, const Estimate& estimate, const FilmSample& seen) {
+    LightParts parts = estimate.parts;
+    sorter_->add(parts, max(seen.radiance - estimate.radiance, Rgb(0, 0, 0)), LightRoute(), LightSource());
+    for (size_t i = 0; i < result().light.size(); ++i)
+      // Parts of what the film takes are finite and not negative, but for rounding at the end of the range.
+      (void)result().light[i].film.add(planned.x, planned.y, planned.half, sorter_->part(parts, i));
   }
 
   /// Of a pixel's samples, as far as a half knows it: not by extra samples, whose number depends on the other
@@ -295,6 +309,7 @@ class Renderer {
   const Integrator& integrator_;
   const RenderSettings& options_;
   const Backdrop& backdrop_;
+  const LightSorter* sorter_;  ///< null: no light is kept apart
   const Crop crop_;
   const std::atomic<bool>& stop_;
   const RenderHooks hooks_;
@@ -322,8 +337,9 @@ RenderResult render(const Scene& scene, const Camera& camera, const Integrator& 
                     const RenderSettings& settings, const std::atomic<bool>& stop, RenderHooks hooks) {
   const Crop part = rendered_part(settings);
   const Backdrop backdrop(settings);
-  RenderState state(part.width, part.height, settings.adaptive, backdrop.is_transparent());
-  render({scene, camera, integrator, settings, backdrop}, state, stop, std::move(hooks));
+  const LightSorter sorter(settings.light_split, scene);
+  RenderState state(part.width, part.height, settings.adaptive, backdrop.is_transparent(), sorter.layers());
+  render({scene, camera, integrator, settings, backdrop, sorter}, state, stop, std::move(hooks));
   return std::move(state.so_far);
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/film/error_estimate.h"
@@ -30,10 +31,17 @@ struct BadSample {
   auto operator<=>(const BadSample&) const = default;
 };
 
+/// A part of a picture's light, sampled like the whole.
+struct LightFilm {
+  std::string layer;  ///< as pictures call it
+  Film film;
+};
+
 struct RenderResult {
   explicit RenderResult(Film empty) : film(std::move(empty)) {}
 
-  Film film;  ///< of the crop's size
+  Film film;                     ///< of the crop's size
+  std::vector<LightFilm> light;  ///< parts of it that were asked for
   StopReason reason = StopReason::samples;
   ErrorEstimate error;
   /// Error after passes, in order, and at the end: how this render converged.
@@ -77,6 +85,7 @@ struct RenderJob {
   const Integrator& integrator;
   const RenderSettings& settings;
   const Backdrop& backdrop;
+  const LightSorter& sorter;
 };
 
 /// Renders tiles of the picture in passes on all threads, from where `state` is, of a render with the same

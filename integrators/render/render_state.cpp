@@ -34,6 +34,8 @@ const char* implausible_part(const RenderState& state) {
   };
   if (!so_far.film.is_plausible() || accepted_samples(so_far.film) + so_far.bad_samples != so_far.samples)
     return "film";
+  for (const LightFilm& part : so_far.light)
+    if (!part.film.is_plausible()) return part.layer.c_str();
   if (!state.guides[0].is_plausible()) return "guide 1";
   if (!state.guides[1].is_plausible()) return "guide 2";
   const auto is_count = [](uint32_t count) { return count <= RenderState::most_samples; };

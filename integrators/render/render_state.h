@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "integrators/render/render.h"
@@ -20,11 +23,14 @@ struct RenderState {
   static constexpr uint32_t most_samples = 1 << 30;
 
   /// Of a picture, or crop, of which nothing is rendered yet.
-  RenderState(int width, int height, bool adaptive, bool has_alpha = false)
+  RenderState(int width, int height, bool adaptive, bool has_alpha = false,
+              std::span<const std::string> light_layers = {})
       : so_far(Film(width, height, has_alpha)),
         guides{SampleGuide(adaptive ? width : 0, height), SampleGuide(adaptive ? width : 0, height)},
         drawn{{}, std::vector<uint32_t>(adaptive ? size_t(width) * height * Film::halves : 0)},
-        light(size_t(tile_count())) {}
+        light(size_t(tile_count())) {
+    for (const std::string& layer : light_layers) so_far.light.push_back({layer, Film(width, height)});
+  }
 
   /// Of a picture, or crop, of this size.
   static int tile_count(int width, int height) {
@@ -33,16 +39,19 @@ struct RenderState {
   int tile_columns() const { return (so_far.film.width() + tile_size - 1) / tile_size; }
   int tile_count() const { return tile_count(so_far.film.width(), so_far.film.height()); }
 
-  static constexpr size_t bytes_per_pixel(bool adaptive, bool has_alpha) {
+  static constexpr size_t bytes_per_pixel(bool adaptive, bool has_alpha, size_t light_layers = 0) {
     // Guides, the plan, and which samples come next.
     const size_t guiding =
         Film::halves * (SampleGuide::bytes_per_pixel() + sizeof(uint16_t) + sizeof(uint32_t));
-    return Film::bytes_per_pixel() + (has_alpha ? Film::alpha_bytes_per_pixel() : 0) +
+    return (1 + light_layers) * Film::bytes_per_pixel() + (has_alpha ? Film::alpha_bytes_per_pixel() : 0) +
            (adaptive ? guiding : 0);
   }
   /// Whether a render of a picture, or crop, of this size can go on from it.
-  bool fits(int width, int height, bool adaptive, bool has_alpha) const {
-    return so_far.film.width() == width && so_far.film.height() == height &&
+  bool fits(int width, int height, bool adaptive, bool has_alpha,
+            std::span<const std::string> light_layers = {}) const {
+    return std::equal(so_far.light.begin(), so_far.light.end(), light_layers.begin(), light_layers.end(),
+                      [](const LightFilm& part, const std::string& layer) { return part.layer == layer; }) &&
+           so_far.film.width() == width && so_far.film.height() == height &&
            so_far.film.has_alpha() == has_alpha && guides[0].bytes().empty() == !adaptive;
   }
 

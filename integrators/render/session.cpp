@@ -44,6 +44,10 @@ void check(const Scene* scene, const RenderSettings& settings) {
   if (!(camera.focus_distance > 0))
     refuse(fmt::format("a focus distance of {} m; expected more than 0", camera.focus_distance));
   check_filter(settings.filter);
+  const bool splits = !settings.light_split.ways.empty() || !settings.light_split.groups.empty();
+  if (splits && !find_by_name(integrators(), "integrator", settings.integrator).splits_light)
+    refuse(fmt::format("the integrator {} does not keep parts of the light apart; path does",
+                       settings.integrator));
   check(settings.background);
 }
 
@@ -66,8 +70,9 @@ class RenderSession::State {
                                    options_for(settings.background, settings.integrator_options))),
         camera(settings.camera, settings.width, settings.height),
         backdrop(settings),
+        sorter(settings.light_split, *scene),
         render(rendered_part(settings).width, rendered_part(settings).height, settings.adaptive,
-               backdrop.is_transparent()) {}
+               backdrop.is_transparent(), sorter.layers()) {}
 
   RenderIdentity identity() const {
     RenderIdentity identity{{"version", version()}};
@@ -83,6 +88,7 @@ class RenderSession::State {
   const std::unique_ptr<Integrator> integrator;
   const Camera camera;
   const Backdrop backdrop;
+  const LightSorter sorter;
   RenderState render;
   RenderHooks hooks;
   std::atomic<std::thread::id> user{};  ///< the thread in a call; none: std::thread::id()
@@ -150,7 +156,8 @@ StopReason RenderSession::run(const std::atomic<bool>& stop) {
   const Use use(state_->user);
   if (!use.is_outermost()) refuse("run() cannot be called by a callback of its own");
   State& s = *state_;
-  vernier::render({*s.scene, s.camera, *s.integrator, s.settings, s.backdrop}, s.render, stop, s.hooks);
+  vernier::render({*s.scene, s.camera, *s.integrator, s.settings, s.backdrop, s.sorter}, s.render, stop,
+                  s.hooks);
   return s.render.so_far.reason;
 }
 
@@ -189,7 +196,7 @@ std::vector<Notice> RenderSession::load(const std::string& path) {
   require_same_render(path, checkpoint.identity, state_->identity());
   const Crop part = rendered_part(state_->settings);
   if (!checkpoint.state->fits(part.width, part.height, state_->settings.adaptive,
-                              state_->backdrop.is_transparent()))
+                              state_->backdrop.is_transparent(), state_->sorter.layers()))
     throw Error(ErrorKind::input, path, {},
                 "is damaged: what it holds is not of the size that it says; use another checkpoint or render "
                 "from the beginning");
@@ -208,8 +215,12 @@ RenderStatus RenderSession::status() const {
 
 LayeredImage RenderSession::picture(const std::string& layers) const {
   const Use use(state_->user);
-  return with_layers(state_->render.so_far.film, find_layers(layers), *state_->scene, state_->camera,
-                     state_->settings);
+  LayeredImage picture = with_layers(state_->render.so_far, find_layers(layers), *state_->scene,
+                                     state_->camera, state_->settings);
+  const RenderSettings& settings = state_->settings;
+  if (settings.crop.width > 0)
+    picture.place = {settings.crop.x, settings.crop.y, settings.width, settings.height};
+  return picture;
 }
 
 void RenderSession::write(const std::string& path, const std::string& layers) const {

@@ -51,6 +51,7 @@ void for_each_setting(Settings& s, const Visit& visit) {
   visit("show", options.show);
   visit("ambient", options.ambient);
   visit("cutoff", options.cutoff);
+  visit("light-split", s.light_split);
   visit("adaptive", s.adaptive);
   visit("seed", s.seed);
 }
@@ -84,6 +85,12 @@ Json encode(const Background& background) {
   return {{"kind", name_of(background_kinds, background.kind)},
           {"color", encode(background.color)},
           {"file", background.file}};
+}
+Json encode(const LightSplit& split) {
+  Json json{{"ways", split.ways}, {"groups", Json::array()}};
+  for (const LightGroup& group : split.groups)
+    json["groups"].push_back({{"name", group.name}, {"lights", group.lights}});
+  return json;
 }
 template <typename T>
 Json encode(const T& value) {
@@ -132,6 +139,12 @@ void decode(const Json& json, Background& background) {
   decode(json.at("color"), background.color);
   background.file = json.at("file").get<std::string>();
 }
+void decode(const Json& json, LightSplit& split) {
+  split = {json.at("ways").get<std::vector<std::string>>(), {}};
+  for (const Json& group : json.at("groups"))
+    split.groups.push_back(
+        {group.at("name").get<std::string>(), group.at("lights").get<std::vector<std::string>>()});
+}
 template <typename T>
 void decode(const Json& json, T& value) {
   value = json.get<T>();
@@ -151,6 +164,12 @@ std::string text(const CameraDescription& camera) {
 template <typename T>
 std::string text(const T& value) {
   return fmt::format("{}", value);
+}
+std::string text(const LightSplit& split) {
+  std::string all = fmt::format("{}", fmt::join(split.ways, " "));
+  for (const LightGroup& group : split.groups)
+    all += fmt::format("{}{}={}", all.empty() ? "" : " ", group.name, fmt::join(group.lights, "+"));
+  return all.empty() ? "none" : all;
 }
 std::string text(const Background& background) { return background_text(background); }
 std::string text(const Crop& crop) { return crop.width > 0 ? crop_text(crop) : "none"; }

@@ -32,7 +32,7 @@ void look(const Scene& scene, const Integrator& integrator, const Ray& ray, Samp
   if (!hit) return;
   ++pixel.covered;
   const float emitted = luminance(scene.emitted(nullptr, ray, &*hit).radiance);
-  const float total = luminance(integrator.estimate(scene, ray, sampler, 0).radiance);
+  const float total = luminance(integrator.estimate(scene, ray, sampler, {}).radiance);
   if (std::isfinite(total)) pixel.scattered += std::max(0.f, total - emitted);
   pixel.emitted += emitted;
   pixel.albedo += luminance(shade(scene, *hit, -ray.direction).albedo());

@@ -93,6 +93,7 @@ void InstancePlacer::add_node(int index, const NodePlaces& places, const NodePos
     instance.material = material_of(primitive);
     instance.mesh = mesh_of(std::move(use), instance.material);
     instance.object = first_object_;
+    instance.asset = document_.model().nodes[size_t(places.top[size_t(index)])].name;
     // A skinned mesh is where its joints are; its own node does not count (glTF 2.0, 3.7.3.3).
     if (node.skin >= 0)
       result_.instances.push_back(std::move(instance));

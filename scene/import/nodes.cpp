@@ -64,6 +64,7 @@ NodePlaces place_nodes(const Document& document, const std::vector<NodePose>& po
   const std::vector<int> parents = parents_of(document);
   NodePlaces places;
   for (const auto& pose : poses) places.to_world.push_back(pose.to_parent());
+  places.top.resize(nodes.size());
   std::vector<bool> reached(nodes.size(), false);
   std::vector<int> pending;
   for (size_t root = 0; root < nodes.size(); ++root) {
@@ -73,6 +74,7 @@ NodePlaces place_nodes(const Document& document, const std::vector<NodePose>& po
       const size_t node = size_t(pending.back());
       pending.pop_back();
       reached[node] = true;
+      places.top[node] = int(root);
       for (const int child : nodes[node].children) {
         places.to_world[size_t(child)] *= places.to_world[node];
         pending.push_back(child);

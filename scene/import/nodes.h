@@ -15,6 +15,7 @@ namespace vernier {
 struct NodePlaces {
   std::vector<Imath::M44d> to_world;
   std::vector<int> shown;  ///< nodes of the scene, parents before children
+  std::vector<int> top;    ///< by node: the one at the top of its tree
 };
 
 /// Accumulates the poses (one per node) down the hierarchy, iteratively. Throws Error(input) on a cycle, on a

@@ -60,7 +60,7 @@ Vec2f EnvironmentLight::to_uv(const Vec3f& w) const {
   return {u >= 0 ? std::min(u, 0x1.fffffep-1f) : 0, v >= 0 ? v : 0};
 }
 
-Vec3f EnvironmentLight::to_direction(const Vec2f& uv) const {
+Vec3f EnvironmentLight::direction(const Vec2f& uv) const {
   const float theta = uv.y * pi, phi = (uv.x - 0.5f) * 2 * pi;
   const float sin_theta = std::sin(theta);
   const float x = sin_theta * std::cos(phi), z = sin_theta * std::sin(phi);
@@ -75,8 +75,8 @@ std::optional<LightSample> EnvironmentLight::sample(const SurfacePoint& from, co
   const Vec2f uv = distribution_.sample(u, pdf);
   const float sin_theta = std::sin(uv.y * pi);
   if (!(pdf > 0) || !(sin_theta > 0)) return std::nullopt;
-  const Vec3f wi = to_direction(uv);
-  return LightSample{wi, lookup(uv), pdf / (2 * pi * pi * sin_theta), false, from.spawn(wi)};
+  const Vec3f wi = direction(uv);
+  return LightSample{wi, lookup(uv), pdf / (2 * pi * pi * sin_theta), false, from.spawn(wi), {}};
 }
 
 LightEval EnvironmentLight::eval(const SurfacePoint& /*from*/, const Vec3f& wi,

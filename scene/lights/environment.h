@@ -23,6 +23,8 @@ class EnvironmentLight : public Light {
 
   /// Radiance arriving from the unit direction w.
   Rgb radiance(const Vec3f& w) const;
+  /// Unit direction of a place in the picture, both coordinates in [0, 1].
+  Vec3f direction(const Vec2f& uv) const;
   /// Texels that were not finite or negative and count as black.
   size_t bad_texels() const { return bad_texels_; }
 
@@ -30,7 +32,6 @@ class EnvironmentLight : public Light {
   Rgb texel(int x, int y) const;
   Rgb lookup(const Vec2f& uv) const;
   Vec2f to_uv(const Vec3f& w) const;
-  Vec3f to_direction(const Vec2f& uv) const;
 
   std::shared_ptr<const EnvironmentDescription> description_;
   float cos_rotation_, sin_rotation_;

@@ -8,6 +8,13 @@
 
 namespace vernier {
 
+/// What a light is part of.
+struct LightSource {
+  enum class Kind : uint8_t { instance, lamp, environment };
+  Kind kind = Kind::environment;
+  uint32_t index = 0;  ///< of the instance, or of the punctual light of the description
+};
+
 /// Light that may reach a point from one direction, before what lies between.
 struct LightSample {
   Vec3f wi;  ///< unit, from the point toward the light
@@ -17,6 +24,7 @@ struct LightSample {
   float pdf = 0;          ///< per solid angle; 1 for a delta light
   bool is_delta = false;  ///< cannot be met by a ray
   Ray shadow;             ///< from the point to the light: what lies on it takes its part
+  LightSource source;     ///< set by Scene::sample_light
 };
 
 /// Light met along a direction, and how sample() would have produced it.
@@ -46,6 +54,12 @@ class Light {
 
   /// Whether its samples are delta ones, always.
   virtual bool is_delta() const { return false; }
+
+  LightSource source() const { return source_; }
+  void set_source(LightSource source) { source_ = source; }
+
+ private:
+  LightSource source_;
 };
 
 }  // namespace vernier

@@ -142,7 +142,7 @@ std::optional<LightSample> TriangleLight::sample(const SurfacePoint& from, const
   const Rgb radiance = emission(place, cosine > 0, -wi) * coverage(place);
   const float pdf = view.pdf(place, distance2, std::abs(cosine));
   if (!(pdf > 0) || is_black(radiance)) return std::nullopt;
-  return LightSample{wi, radiance, pdf, false, from.spawn_to(on, error_, normal_, triangle_at(place))};
+  return LightSample{wi, radiance, pdf, false, from.spawn_to(on, error_, normal_, triangle_at(place)), {}};
 }
 
 LightEval TriangleLight::eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const {

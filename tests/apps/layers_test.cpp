@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/image/image_io.h"
 #include "integrators/render/layers.h"
@@ -21,7 +23,7 @@ ProcessResult render(const std::vector<std::string>& more) {
 
 TEST(LayersOfAFile, EveryChannelIsThere) {
   const TemporaryFolder folder;
-  const ProcessResult result = render({"--spp", "20", "--aov", "all", "--crop", "10x8+4+5", "-o",
+  const ProcessResult result = render({"--spp", "20", "--aov", "all,light", "--crop", "10x8+4+5", "-o",
                                        folder.file("a.exr"), "-o", folder.file("a.png")});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const LayeredImage file = read_layers(folder.file("a.exr"));
@@ -53,8 +55,63 @@ TEST(LayersOfAFile, CanBeListed) {
   EXPECT_EQ(result.exit_code, 0);
   for (const Layer& layer : layers()) {
     EXPECT_THAT(result.out, HasSubstr(std::string(layer.name)));
-    EXPECT_THAT(result.out, HasSubstr(std::string(layer.channels[0])));
+    if (layer.channel_count() > 0) EXPECT_THAT(result.out, HasSubstr(std::string(layer.channels[0])));
   }
+}
+
+// The names are those of nodes and materials, under keys and channels that other programs look for.
+TEST(LayersOfAFile, CryptomatteNamesWhatItShows) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(render({"--aov", "crypto_object,crypto_material", "-o", folder.file("a.exr")}).exit_code, 0);
+  const LayeredImage file = read_layers(folder.file("a.exr"));
+  std::map<std::string, nlohmann::json> manifests;
+  for (const auto& [key, text] : file.metadata)
+    if (key.starts_with("cryptomatte/") && key.ends_with("/name")) {
+      const std::string prefix = key.substr(0, key.size() - 4);
+      EXPECT_EQ(prefix.size(), std::string("cryptomatte/1234567/").size());
+      EXPECT_EQ(file.metadata.at(prefix + "hash"), "MurmurHash3_32");
+      EXPECT_EQ(file.metadata.at(prefix + "conversion"), "uint32_to_float32");
+      manifests[text] = nlohmann::json::parse(file.metadata.at(prefix + "manifest"));
+    }
+  ASSERT_EQ(manifests.size(), 2u);
+  const auto scene = nlohmann::json::parse(read_file(cornell_box));
+  std::set<std::string> nodes, materials;
+  for (const auto& node : scene["nodes"]) nodes.insert(node.value("name", ""));
+  for (const auto& material : scene["materials"]) materials.insert(material.value("name", ""));
+  EXPECT_GE(manifests.at("CryptoObject").size(), 3u);
+  for (const auto& [name, id] : manifests.at("CryptoObject").items())
+    EXPECT_TRUE(nodes.contains(name)) << name;
+  for (const auto& [name, id] : manifests.at("CryptoMaterial").items())
+    EXPECT_TRUE(materials.contains(name)) << name;
+}
+
+TEST(LayersOfAFile, LightInPartsIsKeptByCheckpointsAndMerged) {
+  const TemporaryFolder folder;
+  for (const char* seed : {"1", "2"}) {
+    const std::string name = folder.file(seed);
+    const ProcessResult result =
+        render({"--spp", "16", "--adaptive", "off", "--seed", seed, "--checkpoint", name + ".ckpt", "--aov",
+                "light,error", "--light-groups", "all=light", "-o", name + ".exr"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+  }
+  const ProcessResult merged = run_vernier({"merge", folder.file("1.ckpt"), folder.file("2.ckpt"), "-o",
+                                            folder.file("m.exr"), "--aov", "light,light_groups,error"});
+  ASSERT_EQ(merged.exit_code, 0) << merged.err;
+  const LayeredImage a = read_layers(folder.file("1.exr")), b = read_layers(folder.file("2.exr")),
+                     both = read_layers(folder.file("m.exr"));
+  for (const std::string layer : {"diffuse_direct", "diffuse_indirect", "light_all", "light_rest"}) {
+    const Image x = *a.layer(layer), y = *b.layer(layer), mean = *both.layer(layer);
+    for (size_t i = 0; i < mean.values.size(); ++i)
+      EXPECT_NEAR(mean.values[i], (x.values[i] + y.values[i]) / 2, 1e-5f * (1 + mean.values[i])) << layer;
+    EXPECT_TRUE(both.layer(layer + "_error")) << layer;
+  }
+  EXPECT_THAT(render({"--light-groups", "key=lihgt", "-o", folder.file("x.exr")}).err,
+              HasSubstr("did you mean"));
+  EXPECT_THAT(render({"--light-groups", "key=", "-o", folder.file("x.exr")}).err, HasSubstr("NAME=LIGHT"));
+  EXPECT_THAT(render({"--aov", "light_groups", "-o", folder.file("x.exr")}).err, HasSubstr("--light-groups"));
+  EXPECT_THAT(render({"--light-groups", "light", "-o", folder.file("x.png")}).err, HasSubstr("only an .exr"));
+  EXPECT_THAT(render({"--aov", "light", "--integrator", "whitted", "-o", folder.file("x.exr")}).err,
+              HasSubstr("path does"));
 }
 
 TEST(LayersOfAFile, UsageErrors) {

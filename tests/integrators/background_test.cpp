@@ -42,8 +42,9 @@ MeshDescription wall(float z) { return parallelogram({-1, -1, z}, {2, 0, 0}, {0,
 class OverWhite : public Integrator {
  public:
   explicit OverWhite(std::unique_ptr<Integrator> integrator) : integrator_(std::move(integrator)) {}
-  Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler, float spread) const override {
-    Estimate estimate = integrator_->estimate(scene, ray, sampler, spread);
+  Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler,
+                    const SampleContext& context) const override {
+    Estimate estimate = integrator_->estimate(scene, ray, sampler, context);
     estimate.radiance += estimate.background;
     return estimate;
   }
@@ -56,8 +57,9 @@ class OverWhite : public Integrator {
 class Transparency : public OverWhite {
  public:
   using OverWhite::OverWhite;
-  Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler, float spread) const override {
-    const Estimate all = OverWhite::estimate(scene, ray, sampler, spread);
+  Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler,
+                    const SampleContext& context) const override {
+    const Estimate all = OverWhite::estimate(scene, ray, sampler, context);
     Estimate estimate;
     estimate.radiance = all.background;
     return estimate;
@@ -135,8 +137,9 @@ TEST(BackgroundApart, CountsTheCameraRaysThatMeetASurface) {
   for (const char* name : {"path", "whitted", "raycast"}) {
     const auto integrator = make_integrator(name, {.max_depth = 5});
     Sampler sampler(0, 0, 0);
-    EXPECT_TRUE(integrator->estimate(scene, ray_through({0, 0.2f, 4}, {0, 0.2f, 0}), sampler, 0).met_surface);
-    EXPECT_FALSE(integrator->estimate(scene, ray_through({3, 0, 4}, {3, 0, 0}), sampler, 0).met_surface);
+    EXPECT_TRUE(
+        integrator->estimate(scene, ray_through({0, 0.2f, 4}, {0, 0.2f, 0}), sampler, {}).met_surface);
+    EXPECT_FALSE(integrator->estimate(scene, ray_through({3, 0, 4}, {3, 0, 0}), sampler, {}).met_surface);
   }
 }
 

@@ -82,7 +82,8 @@ class CheckpointMutation : public testing::Test {
       Checkpoint checkpoint = read_checkpoint(path);
       if (!go_on || !checkpoint.state->fits(options_.width, options_.height, true, false)) return {};
       options_.limits.spp = 49;  // through the end of the pass and a planning
-      render({scene_, *camera_, *integrator_, options_, Backdrop(options_)}, *checkpoint.state, stop_);
+      render({scene_, *camera_, *integrator_, options_, Backdrop(options_), LightSorter({}, scene_)},
+             *checkpoint.state, stop_);
       return {};
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::input);

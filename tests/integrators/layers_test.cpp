@@ -36,8 +36,9 @@ class Layers : public testing::Test {
     const Camera camera(view_, options_.width, options_.height);
     const std::atomic<bool> stop = false;
     const auto integrator = path({});
-    const Film film = render(scene_, camera, *integrator, options_, stop).film;
-    return with_layers(film, find_layers(list), scene_, camera, options_);
+    options_.light_split.ways = light_ways_of(find_layers(list));
+    const RenderResult result = render(scene_, camera, *integrator, options_, stop);
+    return with_layers(result, find_layers(list), scene_, camera, options_);
   }
 
   const Scene scene_ = two_walls();
@@ -109,7 +110,7 @@ TEST_F(Layers, HalvesAreTwoPicturesWithThatMean) {
 TEST_F(Layers, EveryLayerAloneIsThatOfAll) {
   options_.limits.spp = 40;
   options_.adaptive = true;
-  const LayeredImage all = picture("all");
+  const LayeredImage all = picture("all,light");
   EXPECT_EQ(picture("").channel_names, (std::vector<std::string>{"R", "G", "B"}));
   EXPECT_EQ(picture("").image.values, all.rgb().values);
   for (const Layer& layer : layers()) {
@@ -144,8 +145,10 @@ TEST(LayerNames, AreInTheTablesOrderAndOnce) {
   const auto found = find_layers("albedo,error,albedo");
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].name, "error");
-  EXPECT_EQ(find_layers("all").size(), layers().size());
-  EXPECT_TRUE(find_layers("error,all").size() == layers().size());
+  const size_t light = light_way_names().size() + 1;
+  EXPECT_EQ(find_layers("all").size(), layers().size() - light);
+  EXPECT_EQ(find_layers("error,all").size(), layers().size() - light);
+  EXPECT_EQ(find_layers("all,light,light_groups").size(), layers().size());
   for (const char* bad : {"albdo", "error,", ",", "error,,albedo", " error"})
     EXPECT_THROW(find_layers(bad), Error) << bad;
 }

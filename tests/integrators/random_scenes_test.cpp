@@ -49,7 +49,7 @@ std::array<Samples, 3> radiance(const Scene& scene, const Technique& technique, 
     for (uint32_t i = 0; i < count; ++i) {
       Sampler sampler(set, i, seed);
       mean += Vec3d(
-          integrator->estimate(scene, shaken(ray, sampler.next2()), sampler, technique.spread).radiance);
+          integrator->estimate(scene, shaken(ray, sampler.next2()), sampler, {technique.spread}).radiance);
     }
     for (int c = 0; c < 3; ++c) result[size_t(c)].add(mean[c] / count);
   }

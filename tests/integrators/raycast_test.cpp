@@ -8,7 +8,7 @@ Rgb show(const Scene& scene, const std::string& what, const Ray& ray) {
   IntegratorOptions options;
   options.show = what;
   Sampler sampler(0, 0, 0);
-  return make_integrator("raycast", options)->estimate(scene, ray, sampler, 0).radiance;
+  return make_integrator("raycast", options)->estimate(scene, ray, sampler, {}).radiance;
 }
 
 void expect_near(const Rgb& actual, const Rgb& expected, float tolerance) {

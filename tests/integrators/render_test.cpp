@@ -104,7 +104,7 @@ TEST(Render, StopsWithAPicture) {
 class Fireflies : public Integrator {
  public:
   explicit Fireflies(float share) : share_(share) {}
-  Estimate estimate(const Scene&, const Ray& ray, Sampler& sampler, float) const override {
+  Estimate estimate(const Scene&, const Ray& ray, Sampler& sampler, const SampleContext&) const override {
     sampler.start_block(1);
     const float u = sampler.next1();
     Estimate out;
@@ -178,7 +178,7 @@ TEST(Render, StoppingAtAnErrorIsUnbiased) {
 /// Every third sample is not a number.
 class Broken : public Integrator {
  public:
-  Estimate estimate(const Scene&, const Ray&, Sampler& sampler, float) const override {
+  Estimate estimate(const Scene&, const Ray&, Sampler& sampler, const SampleContext&) const override {
     sampler.start_block(1);
     Estimate out;
     if (sampler.next1() < 1 / 3.f) out.radiance.x = std::numeric_limits<float>::quiet_NaN();

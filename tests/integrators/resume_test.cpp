@@ -44,7 +44,8 @@ class Resume : public testing::Test {
   RenderResult go_on(const RenderState& state) {
     RenderState further = state;
     stop_ = false;
-    vernier::render({scene_, *camera_, *integrator_, options_, Backdrop(options_)}, further, stop_);
+    vernier::render({scene_, *camera_, *integrator_, options_, Backdrop(options_), LightSorter({}, scene_)},
+                    further, stop_);
     return std::move(further.so_far);
   }
   /// The state at the end of a render.

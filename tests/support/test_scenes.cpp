@@ -150,7 +150,7 @@ Samples measure(const Scene& scene, const Integrator& integrator, const Ray& ray
   parallel_for(means.size(), [&](size_t set) {
     for (int i = 0; i < samples; ++i) {
       Sampler sampler(uint32_t(set), uint32_t(i), seed);
-      means[set] += double(integrator.estimate(scene, ray, sampler, spread).radiance.x) / samples;
+      means[set] += double(integrator.estimate(scene, ray, sampler, {spread}).radiance.x) / samples;
     }
   });
   Samples result;

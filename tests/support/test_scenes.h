@@ -55,7 +55,7 @@ class SceneBuilder {
 std::unique_ptr<Integrator> path(const IntegratorOptions& options);
 
 /// Means of independent sets of `samples` stratified samples each of the radiance along `ray`, first channel.
-/// Values within a set are not independent; their means are. `spread`: see Integrator::estimate.
+/// Values within a set are not independent; their means are. `spread`: see SampleContext.
 Samples measure(const Scene& scene, const Integrator& integrator, const Ray& ray, int samples, int sets = 16,
                 uint64_t seed = 1, float spread = 0);
 
