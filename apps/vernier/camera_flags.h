@@ -7,6 +7,7 @@
 
 #include "apps/vernier/commands.h"
 #include "apps/vernier/lens.h"
+#include "vernier/ground.h"
 
 namespace vernier::apps {
 

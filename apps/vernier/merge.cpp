@@ -14,6 +14,7 @@
 #include "apps/vernier/render_options.h"
 #include "apps/vernier/render_report.h"
 #include "core/base/parallel.h"
+#include "core/base/quantities.h"
 #include "integrators/render/checkpoint.h"
 #include "vernier/error.h"
 
