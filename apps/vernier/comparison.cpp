@@ -97,6 +97,11 @@ Comparison compare_files(const std::string& picture, const std::string& referenc
     throw Error(ErrorKind::usage, fmt::format("{} holds {} and {} {}; compare pictures of one kind", picture,
                                               x.linear ? "linear light" : "display values", reference,
                                               r.linear ? "linear light" : "display values"));
+  if (x.place.x != r.place.x || x.place.y != r.place.y || x.place.full_width != r.place.full_width ||
+      x.place.full_height != r.place.full_height)
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("{} and {} are different parts of pictures; compare the same part", picture, reference));
   const auto x_alpha = alpha_of(x), r_alpha = alpha_of(r);
   if (x_alpha.has_value() != r_alpha.has_value())
     throw Error(ErrorKind::usage,

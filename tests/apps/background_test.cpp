@@ -93,7 +93,10 @@ TEST_F(BackgroundFlags, WhatCannotBeIsRefusedInALine) {
       {{"--background", file("none.png"), "-o", file("a.png")}, "none.png"},
       {{"--background", file("notes.txt"), "-o", file("a.png")}, "notes.txt"},
       {{"--background", file("a.png"), "-o", file("a.png")}, "a.png"},
-      {{"--ground", "grass", "-o", file("a.png")}, "none,matte"}};
+      {{"--ground", "grass", "-o", file("a.png")}, "none,matte,shadow"},
+      {{"--ground", "shadow", "-o", file("a.png")}, "add --transparent or --background"},
+      {{"--ground", "shadow", "--transparent", "--integrator", "whitted", "-o", file("a.png")},
+       "needs --integrator path"}};
   for (const auto& [flags, complaint] : cases) {
     const ProcessResult result = render(flags);
     EXPECT_NE(result.exit_code, 0) << complaint;
@@ -204,6 +207,26 @@ TEST_F(BackgroundFlags, AGroundIsASurface) {
   };
   EXPECT_EQ(alpha_below("none"), 0);
   EXPECT_EQ(alpha_below("matte"), 1);
+}
+
+TEST_F(BackgroundFlags, AGroundMayBeItsShadowAlone) {
+  must(render({"--transparent", "--ground", "shadow", "--env", "sky", "--elevation", "30", "--zoom", "0.5",
+               "--spp", "64", "-o", file("a.exr"), "--aov", "id,crypto_object"}));
+  const LayeredImage shadow = read_layers(file("a.exr"));
+  must(render({"--transparent", "--env", "sky", "--elevation", "30", "--zoom", "0.5", "--spp", "64", "-o",
+               file("b.exr")}));
+  const Image with = *shadow.single("A"), without = *read_layers(file("b.exr")).single("A");
+  const Image color = shadow.rgb();
+  int shadowed = 0, clear = 0;
+  for (size_t i = 0; i < with.values.size(); ++i) {
+    EXPECT_GE(with.values[i], without.values[i] - 1e-6f);
+    if (without.values[i] > 0) continue;
+    shadowed += with.values[i] > 0.1f;
+    clear += with.values[i] == 0;
+    EXPECT_EQ(color.values[3 * i], 0) << "a shadow is black";
+  }
+  EXPECT_GT(shadowed, 5);
+  EXPECT_GT(clear, int(with.values.size()) / 4);
 }
 
 }  // namespace

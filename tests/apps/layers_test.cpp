@@ -29,6 +29,9 @@ TEST(LayersOfAFile, EveryChannelIsThere) {
   const LayeredImage file = read_layers(folder.file("a.exr"));
   EXPECT_EQ(file.image.width, 10);
   EXPECT_EQ(file.image.height, 8);
+  EXPECT_EQ(file.place.x, 4);
+  EXPECT_EQ(file.place.y, 5);
+  EXPECT_EQ(file.place.full_width, 24);
   for (const Layer& layer : layers())
     for (int c = 0; c < layer.channel_count(); ++c)
       EXPECT_TRUE(file.single(std::string(layer.channels[size_t(c)]))) << layer.channels[size_t(c)];
@@ -55,7 +58,8 @@ TEST(LayersOfAFile, CanBeListed) {
   EXPECT_EQ(result.exit_code, 0);
   for (const Layer& layer : layers()) {
     EXPECT_THAT(result.out, HasSubstr(std::string(layer.name)));
-    if (layer.channel_count() > 0) EXPECT_THAT(result.out, HasSubstr(std::string(layer.channels[0])));
+    for (int c = 0; c < layer.channel_count(); ++c)
+      EXPECT_THAT(result.out, HasSubstr(std::string(layer.channels[size_t(c)])));
   }
 }
 

@@ -85,6 +85,28 @@ TEST(ImageIo, HalfIsForColorAndLimitsWhatItCannotHold) {
   EXPECT_EQ(value("error.R", 1), image.values[11]);
 }
 
+TEST(ImageIo, APartOfAPictureKeepsItsPlace) {
+  const TemporaryFolder folder;
+  Image part(2, 1, 3);
+  part.values = {1, 2, 3, 4, 5, 6};
+  ExrOptions options;
+  options.place = {3, 1, 6, 4};
+  write_exr(folder.file("a.exr"), part, {"R", "G", "B"}, {}, options);
+  const LayeredImage back = read_layers(folder.file("a.exr"));
+  EXPECT_EQ(back.image.values, part.values);
+  EXPECT_EQ(back.place.x, 3);
+  EXPECT_EQ(back.place.y, 1);
+  EXPECT_EQ(back.place.full_width, 6);
+  EXPECT_EQ(back.place.full_height, 4);
+  const Image whole = read_image(folder.file("a.exr"));
+  ASSERT_EQ(whole.width, 6);
+  ASSERT_EQ(whole.height, 4);
+  EXPECT_EQ(rgb_at(whole, 4, 1), Rgb(4, 5, 6));
+  float sum = 0;
+  for (const float value : whole.values) sum += value;
+  EXPECT_EQ(sum, 21) << "black around it";
+}
+
 TEST(ImageIo, ExrKeepsInfinityAndNan) {
   const TemporaryFolder folder;
   Image image(2, 1, 3);
