@@ -51,7 +51,7 @@ struct Parts {
     }
     if (text.empty()) text = header.dump();
     std::string file = "VERNCKPT";
-    for (const uint32_t number : {3u, uint32_t(text.size())})
+    for (const uint32_t number : {4u, uint32_t(text.size())})
       file.append(reinterpret_cast<const char*>(&number), sizeof(number));
     file += fingerprint(std::as_bytes(std::span(text))) + text;
     for (const std::string& array : arrays) file += array;
@@ -66,6 +66,7 @@ class CheckpointMutation : public testing::Test {
     options_.width = 36;
     options_.height = 20;
     options_.limits.spp = 40;
+    options_.light_split.ways = {"diffuse_direct"};
     CameraDescription view;
     view.to_world.origin = {0, 1, 0.95f};
     camera_.emplace(view, options_.width, options_.height);
@@ -80,10 +81,12 @@ class CheckpointMutation : public testing::Test {
     const std::string path = folder_.write("mutant.ckpt", bytes);
     try {
       Checkpoint checkpoint = read_checkpoint(path);
-      if (!go_on || !checkpoint.state->fits(options_.width, options_.height, true, false)) return {};
+      const LightSorter sorter(options_.light_split, scene_);
+      if (!go_on || !checkpoint.state->fits(options_.width, options_.height, true, false, sorter.layers()))
+        return {};
       options_.limits.spp = 49;  // through the end of the pass and a planning
-      render({scene_, *camera_, *integrator_, options_, Backdrop(options_), LightSorter({}, scene_)},
-             *checkpoint.state, stop_);
+      render({scene_, *camera_, *integrator_, options_, Backdrop(options_), sorter}, *checkpoint.state,
+             stop_);
       return {};
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::input);
