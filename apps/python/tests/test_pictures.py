@@ -106,14 +106,14 @@ def test_merge_refuses_what_does_not_belong_together(cornell, tmp_path):
         vernier.merge([tmp_path / "a.ckpt", tmp_path / "a.ckpt"])
 
 
-def test_module_is_typed():
+def test_module_is_typed(tmp_path):
     """What is installed for type checkers agrees with the module."""
     folder = pathlib.Path(vernier.__file__).parent
     assert (folder / "py.typed").exists()
     pytest.importorskip("mypy", reason="mypy is not installed")
     program = "import vernier\nimage = vernier.render(vernier.load('a.glb'))\nreveal_type(image.error)\n"
     done = subprocess.run([sys.executable, "-m", "mypy", "-c", program, "--cache-dir", "/dev/null"], check=False,
-                          capture_output=True, text=True, cwd=folder.parent)
+                          capture_output=True, text=True, cwd=tmp_path)
     assert "ErrorEstimate" in done.stdout and done.returncode == 0, done.stdout
 
 

@@ -4,6 +4,7 @@
 import _thread
 import gc
 import multiprocessing
+import signal
 import threading
 import time
 
@@ -73,7 +74,15 @@ def test_a_session_takes_one_call_at_a_time(cornell):
         session.run(time=60, progress=lambda state: session.image())
 
 
-def test_interrupt_leaves_a_session_that_goes_on_to_the_same_bytes(spheres):
+@pytest.fixture
+def interruptible():
+    """Ctrl-C is heard, which a shell has children in the background ignore."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+def test_interrupt_leaves_a_session_that_goes_on_to_the_same_bytes(spheres, interruptible):
     session = vernier.Session(spheres, size=(160, 120))
     threading.Timer(0.4, _thread.interrupt_main).start()  # what Ctrl-C does
     started = time.monotonic()
