@@ -34,7 +34,9 @@ struct Picture {
 
 /// What answers rays, with what is told of the scene that it was built from.
 struct BuiltScene {
-  BuiltScene(SceneFile& file, const ImportOptions& options, bool ground, const std::string& accelerator);
+  /// Throws Error, also on a ground that is neither empty nor the name of a kind.
+  BuiltScene(SceneFile& file, const ImportOptions& options, const std::string& ground,
+             const std::string& accelerator);
 
   std::shared_ptr<Scene> scene;
   std::string source, hash;

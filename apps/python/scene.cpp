@@ -31,6 +31,12 @@ ImportOptions import_options(const std::string& variant, std::optional<double> t
   return options;
 }
 
+GroundKind ground_kind(const std::string& name) {
+  if (name == "matte") return GroundKind::matte;
+  if (name == "shadow") return GroundKind::shadow;
+  throw Error(ErrorKind::usage, "unknown ground '" + name + "'; there are: matte, shadow");
+}
+
 std::optional<std::array<Vec3f, 2>> bounds_of(const SceneDescription& description) {
   std::optional<std::array<Vec3f, 2>> bounds;
   for (const InstanceDescription& instance : description.instances)
@@ -96,7 +102,7 @@ py::list to_list(const std::vector<T>& all) {
 void bind_built(py::module_& module) {
   py::class_<BuiltScene, std::shared_ptr<BuiltScene>>(module, "BuiltScene")
       .def(py::init([](SceneFile& file, const std::string& variant, std::optional<double> time,
-                       const std::string& animation, bool strict, bool ground,
+                       const std::string& animation, bool strict, const std::string& ground,
                        const std::string& accelerator) {
              const py::gil_scoped_release unlocked;
              return std::make_shared<BuiltScene>(file, import_options(variant, time, animation, strict),
@@ -148,11 +154,11 @@ void bind_built(py::module_& module) {
 
 }  // namespace
 
-BuiltScene::BuiltScene(SceneFile& file, const ImportOptions& options, bool ground,
+BuiltScene::BuiltScene(SceneFile& file, const ImportOptions& options, const std::string& ground,
                        const std::string& accelerator) {
   SceneDescription description = file.describe(options);
   bounds = bounds_of(description);
-  if (ground) add_ground(description);
+  if (!ground.empty()) add_ground(description, ground_kind(ground));
   source = description.source;
   hash = description.hash;
   for (const InstanceDescription& instance : description.instances) objects.push_back(instance.name);

@@ -78,7 +78,7 @@ TEST_F(Pictures, AreShownByAnyBeginningOfAView) {
 
 TEST_F(Pictures, AreCloserToTheTruthDenoised) {
   LayeredImage picture = rendered(16)->picture(layers_for_denoising);
-  const LayeredImage truth = rendered(4096, 1)->picture();
+  const LayeredImage truth = rendered(1024, 1)->picture();
   const double noisy = std::sqrt(compare(picture, truth).at("relmse"));
   const auto error = denoise(picture);
   ASSERT_TRUE(error);

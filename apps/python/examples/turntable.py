@@ -31,7 +31,7 @@ def main() -> None:
     arguments.out.mkdir(parents=True, exist_ok=True)
     for i, side in enumerate(sides):
         camera = vernier.Camera.look_at(center + distance * side.matrix[:3, 2], center, yfov=side.yfov)
-        image = vernier.render(scene, camera=camera, size=size, error=arguments.error, env="studio", ground=True)
+        image = vernier.render(scene, camera=camera, size=size, error=arguments.error, env="studio", ground="matte")
         path = arguments.out / f"{i + 1:03}.png"
         image.save(path)
         print(f"{path}: {image.stats['samples_per_pixel']:.4g} spp, error {image.error}")

@@ -8,11 +8,11 @@ import vernier
 from conftest import SCENES
 
 SIZE = ["--size", "48x32"]
-AOV = ("albedo", "depth", "error", "half", "id", "normal", "position", "samples")
+AOV = ("albedo", "depth", "error", "half", "id", "normal", "position", "samples", "crypto_object", "uv")
 CASES = {
     "file's camera and lights": ("cornell_box", {"spp": 8}, ["--spp", "8"]),
     "studio for a dark scene": ("sphere_grid", {"spp": 6}, ["--spp", "6"]),
-    "fitted camera, sky, ground": ("sphere_grid", {"spp": 5, "env": "sky", "ground": True, "env_scale": 2.0},
+    "fitted camera, sky, ground": ("sphere_grid", {"spp": 5, "env": "sky", "ground": "matte", "env_scale": 2.0},
                                    ["--spp", "5", "--env", "sky", "--env-scale", "2", "--ground", "matte"]),
     "until an error": ("two_spheres", {"error": 0.2, "seed": 7}, ["--error", "20%", "--seed", "7"]),
     "transparent": ("sphere_grid", {"spp": 4, "background": "transparent", "env": "studio"},
@@ -22,6 +22,9 @@ CASES = {
                         "accelerator": "bvh", "background": (0.2, 0.3, 0.4)},
                        ["--spp", "4", "--filter", "gaussian:2", "--crop", "20x16+4+3", "--max-depth", "3", "--adaptive",
                         "off", "--accelerator", "bvh", "--background", "0.2,0.3,0.4"]),
+    "light in parts": ("night_room", {"spp": 4, "light_ways": ["diffuse_direct", "emission"],
+                                      "light_groups": {"key": ["lamp"]}},
+                       ["--spp", "4", "--light-groups", "key=lamp"]),
     "raycast": ("two_spheres", {"spp": 2, "integrator": "raycast", "show": "depth"},
                 ["--spp", "2", "--integrator", "raycast", "--show", "depth"]),
     "whitted": ("two_spheres", {"spp": 2, "integrator": "whitted", "ambient": 0.2},
@@ -33,7 +36,8 @@ CASES = {
 def test_same_bytes(case, command, tmp_path):
     name, settings, flags = CASES[case]
     path = SCENES / f"{name}.gltf"
-    done = command("render", path, "-o", "cli.exr", "-o", "cli.png", "-q", *SIZE, "--aov", ",".join(AOV), *flags)
+    parts = [*settings.get("light_ways", []), *(["light_groups"] if "light_groups" in settings else [])]
+    done = command("render", path, "-o", "cli.exr", "-o", "cli.png", "-q", *SIZE, "--aov", ",".join([*AOV, *parts]), *flags)
     assert done.returncode == 0, done.stderr
     image = vernier.render(vernier.load(path), size=(48, 32), aov=AOV, **settings)
     theirs = vernier.read(tmp_path / "cli.exr")

@@ -52,23 +52,23 @@ class Missing(NamedTuple):
     depth: MissingFigure
 
 
-_LAYER_NAMES = {"N": "normal", "Z": "depth", "P": "position"}
-_COMPONENTS = (("R", "G", "B"), ("X", "Y", "Z"))
+_LAYER_NAMES = {"N": "normal", "Z": "depth", "P": "position", "UV": "uv"}
+_COMPONENTS = ("RGB", "XYZ", "UV", "rgba")
 
 
 def _layers(names: Sequence[str], values: np.ndarray) -> dict[str, np.ndarray]:
-    """Channels A.R, A.G, A.B or A.X, A.Y, A.Z are the layer A of three values a pixel, others one of their own."""
+    """Channels A.R, A.G, A.B (or others of _COMPONENTS) are the layer A of several values a pixel, others one each."""
     layers: dict[str, np.ndarray] = {}
     index = 0
     while index < len(names):
-        stem, _, last = names[index].rpartition(".")
-        three = stem and any(tuple(names[index:index + 3]) == tuple(f"{stem}.{c}" for c in group)
-                             for group in _COMPONENTS if last == group[0])
-        if three:
-            layers[_LAYER_NAMES.get(stem, stem)] = values[..., index:index + 3]
+        stem = names[index].rpartition(".")[0]
+        count = max(len(group) if [*names[index:index + len(group)]] == [f"{stem}.{c}" for c in group] else 1
+                    for group in _COMPONENTS)
+        if count > 1:
+            layers[_LAYER_NAMES.get(stem, stem)] = values[..., index:index + count]
         elif names[index] not in ("R", "G", "B", "A"):
             layers[_LAYER_NAMES.get(names[index], names[index])] = values[..., index]
-        index += 3 if three else 1
+        index += count
     return layers
 
 
@@ -88,7 +88,7 @@ class Image:
         pixels: (height, width, 3) float32, top row first: scene-linear Rec.709 radiance, W m^-2 sr^-1, untouched by any
             exposure or view. Of a transparent picture, multiplied by alpha.
         alpha: (height, width) float32, or None.
-        layers: by name, (height, width, 3) or (height, width) float32: "depth", "normal", "id", ... (docs/layers.md)
+        layers: by name, (height, width) or (height, width, components) float32: "depth", "normal", "id", ... (docs/layers.md)
         metadata: texts for the headers of the files that it is saved to.
         stats: what was measured of the render: seconds, samples_per_pixel, samples, rays, bad_samples, stopped_by, ...
         notices: what came up while it was rendered.

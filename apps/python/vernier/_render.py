@@ -37,8 +37,8 @@ class Settings(TypedDict, total=False):
     background: str | os.PathLike[str] | Sequence[float] | None
     """What the camera sees behind the scene, which does not light it: "transparent", three scene-linear numbers, or a
     picture file. None: the surroundings."""
-    ground: bool
-    """A matt grey plane under the scene (False)."""
+    ground: str | None
+    """Under the scene: "matte", a grey plane, or "shadow", of which only its shadow shows (None)."""
     integrator: str
     """"path", "whitted" or "raycast" ("path")."""
     max_depth: int
@@ -59,6 +59,11 @@ class Settings(TypedDict, total=False):
     """Spend samples where they lower the picture's error (True)."""
     seed: int
     """Of the random numbers (0)."""
+    light_ways: Sequence[str]
+    """Light that is kept apart by its way to the camera, as layers: "emission", "diffuse_direct", ... (none)."""
+    light_groups: Mapping[str, Sequence[str]]
+    """Light that is kept apart by its source, as layers light_NAME: names of lights, of nodes or materials that emit, or
+    "environment", by the name of their group (none)."""
 
 
 class Progress(NamedTuple):
@@ -116,8 +121,11 @@ def _request(scene: Scene, given: Settings) -> Request:
     for name in ("ambient", "cutoff"):
         settings[name] = float(given.get(name, settings[name]))  # type: ignore[arg-type]
     settings["adaptive"] = bool(given.get("adaptive", True))
+    groups = given.get("light_groups", {})
+    settings["light-split"] = {"ways": [str(way) for way in given.get("light_ways", ())],
+                               "groups": [{"name": name, "lights": list(lights)} for name, lights in groups.items()]}
     env = Environment(given.get("env"), given.get("env_rotation", 0.0), given.get("env_scale", 1.0))
-    return Request(settings, env, bool(given.get("ground", False)), str(given.get("accelerator", "")), camera.name)
+    return Request(settings, env, given.get("ground") or "", str(given.get("accelerator", "")), camera.name)
 
 
 class Session:
@@ -164,9 +172,12 @@ class Session:
         return self._reason
 
     def image(self, *, aov: str | Sequence[str] = ()) -> Image:
-        """The picture so far, with the layers of these names ("all": every one; docs/layers.md)."""
+        """The picture so far, with the layers of these names ("all": every one; docs/layers.md), and light in parts."""
         request = self._request
-        picture = self._session.picture(aov if isinstance(aov, str) else ",".join(aov))
+        split = request.settings["light-split"]
+        names = [aov] if isinstance(aov, str) else [*aov]
+        names += split["ways"] + (["light_groups"] if split["groups"] else [])
+        picture = self._session.picture(",".join(name for name in names if name))
         width, height = request.settings["size"]
         about = {"camera": request.camera, "surroundings": request.surroundings,
                  "integrator": request.settings["integrator"], "seed": request.settings["seed"],
@@ -222,9 +233,7 @@ def render(scene: Scene, *, spp: int | None = None, error: float | None = None, 
     keeps what is there.
     """
     session = Session(scene, threads=threads, **settings)
-    names = aov.split(",") if isinstance(aov, str) else list(aov)
-    if denoise is not None and "all" not in names:
-        names += LAYERS_FOR_DENOISING
+    names = [aov] if isinstance(aov, str) else [*aov]
     session.run(spp=spp, error=error, time=time, progress=progress)
-    image = session.image(aov=",".join(name for name in names if name))
+    image = session.image(aov=names if denoise is None else [*names, *LAYERS_FOR_DENOISING])
     return image if denoise is None else image.denoise(denoise)

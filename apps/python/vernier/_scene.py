@@ -50,7 +50,7 @@ class _Slot:
     """A built scene, what is around it, and who renders it."""
 
     built: _core.BuiltScene
-    kind: tuple[bool, str]  # whether it has a ground, and its accelerator
+    kind: tuple[str, str]  # its ground and its accelerator
     around: object = None  # equal ones mean the same surroundings
     name: str = ""
     users: weakref.WeakSet[Any] = field(default_factory=weakref.WeakSet)
@@ -73,7 +73,7 @@ class Scene:
         self._file, self._file_lock, self._reading = file, file_lock, reading
         self._lock = threading.Lock()
         self._slots: list[_Slot] = []
-        built = self._add_slot((False, "")).built
+        built = self._add_slot(("", "")).built
         self._cameras = [(camera_from_settings(settings), defect) for settings, defect in built.cameras]
         self.source: str = built.source
         self.hash: str = built.hash
@@ -127,17 +127,17 @@ class Scene:
             raise InputError(defect)
         return camera if camera.name else replace(camera, name=str(index))
 
-    def _build(self, kind: tuple[bool, str]) -> _core.BuiltScene:
+    def _build(self, kind: tuple[str, str]) -> _core.BuiltScene:
         reading = self._reading
         with self._file_lock:
             return _core.BuiltScene(self._file, reading.variant, reading.time, reading.animation, reading.strict, *kind)
 
-    def _add_slot(self, kind: tuple[bool, str]) -> _Slot:
+    def _add_slot(self, kind: tuple[str, str]) -> _Slot:
         slot = _Slot(self._build(kind), kind)
         self._slots.append(slot)
         return slot
 
-    def _slot_with(self, kind: tuple[bool, str], around: object) -> _Slot:
+    def _slot_with(self, kind: tuple[str, str], around: object) -> _Slot:
         """One that has these surroundings or may get them, since nobody renders it."""
         alike = [slot for slot in self._slots if slot.kind == kind]
         for slot in alike:
@@ -240,7 +240,7 @@ class Request:
 
     settings: dict[str, Any]
     env: Environment
-    ground: bool
+    ground: str
     accelerator: str
     camera: str
     notices: list[Notice] = field(default_factory=list)
