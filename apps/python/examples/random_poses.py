@@ -3,13 +3,14 @@
 """A data set: pictures of a scene from random cameras, with depth, object ids, normals and the cameras themselves.
 
 Each pose is a file OUT/NNNN.npz with the arrays rgb (height, width, 3, uint8), depth (metres along the axis, infinite
-where there is nothing), id (0 where there is nothing), normal (world space) and camera_to_world (4, 4), and one PNG to
-look at. The same seed gives the same files.
+where there is nothing), id (0 where there is nothing), normal (world space), camera_to_world (4, 4) and yfov (full vertical
+angle, radians), and one PNG to look at. The same seed gives the same files.
 
     python random_poses.py scene.glb poses --count 100
 """
 
 import argparse
+import dataclasses
 import pathlib
 
 import numpy as np
@@ -17,15 +18,10 @@ import numpy as np
 import vernier
 
 
-def random_camera(bounds: np.ndarray, numbers: np.random.Generator, yfov: float) -> vernier.Camera:
-    """On a sphere around the scene, above its middle, looking at a point near that."""
-    center, radius = bounds.mean(0), np.linalg.norm(bounds[1] - bounds[0]) / 2
-    azimuth, height = numbers.uniform(0, 2 * np.pi), numbers.uniform(0.1, 0.9)
-    level = np.sqrt(1 - height**2)
-    direction = np.array([level * np.sin(azimuth), height, level * np.cos(azimuth)])
-    distance = radius / np.tan(yfov / 2) * numbers.uniform(0.9, 1.3)
-    target = center + numbers.uniform(-0.1, 0.1, 3) * radius
-    return vernier.Camera.look_at(center + distance * direction, target, yfov=yfov)
+def random_camera(scene: vernier.Scene, size: tuple[int, int], numbers: np.random.Generator) -> vernier.Camera:
+    """From anywhere above the scene, which it sees whole or the middle of."""
+    whole = scene.fitted_camera(size, azimuth=numbers.uniform(0, 2 * np.pi), elevation=numbers.uniform(0.1, 1.2))
+    return dataclasses.replace(whole, yfov=whole.yfov * numbers.uniform(0.4, 1))
 
 
 def main() -> None:
@@ -41,15 +37,16 @@ def main() -> None:
     if scene.bounds is None:
         parser.error(f"{arguments.scene} has nothing to see")
     arguments.out.mkdir(parents=True, exist_ok=True)
+    size = tuple(arguments.size)
     numbers = np.random.default_rng(arguments.seed)
     for pose in range(arguments.count):
-        camera = random_camera(scene.bounds, numbers, yfov=0.7)
-        image = vernier.render(scene, camera=camera, size=tuple(arguments.size), spp=arguments.spp, seed=pose, env="studio",
+        camera = random_camera(scene, size, numbers)
+        image = vernier.render(scene, camera=camera, size=size, spp=arguments.spp, seed=pose, env="studio",
                                aov=["depth", "id", "normal"], denoise="nlm")
         rgb = image.to_display()
         name = arguments.out / f"{pose:04}"
         np.savez_compressed(name, rgb=rgb, depth=image.layers["depth"], id=image.layers["id"].astype(np.uint32),
-                            normal=image.layers["normal"], camera_to_world=camera.matrix)
+                            normal=image.layers["normal"], camera_to_world=camera.matrix, yfov=camera.yfov)
         image.save(f"{name}.png")
         print(f"{name}: error {image.error}")
 

@@ -36,7 +36,7 @@ def test_random_poses(tmp_path):
     bounds = vernier.load(SCENES / "sphere_grid.gltf").bounds
     for pose in poses[:10]:
         row, column = np.argwhere(np.isfinite(pose["depth"]))[0]
-        half = np.tan(0.35)
+        half = np.tan(pose["yfov"] / 2)
         ray = np.array([(column + 0.5 - 12) / 8 * half, (8 - row - 0.5) / 8 * half, -1, 0]) * pose["depth"][row, column]
         point = (pose["camera_to_world"] @ (ray + [0, 0, 0, 1]))[:3]
         assert (point > bounds[0] - 1e-3).all() and (point < bounds[1] + 1e-3).all()

@@ -9,6 +9,7 @@ import pytest
 
 import vernier
 from conftest import SCENES
+from vernier._glb import _EXTENSIONS
 
 SIZE = (48, 32)
 
@@ -103,6 +104,16 @@ def test_textures_are_looked_up_where_uvs_say(make_square):
     albedo = vernier.render(scene, size=(8, 8), spp=4, env="sky", camera=camera, aov=["albedo"]).layers["albedo"]
     assert albedo[1, 6, 0] > 0.6
     assert albedo[6, 1, 0] < 0.1
+
+
+def test_every_factor_is_written_as_its_extension(make_square):
+    colors = {name: (0.5, 0.5, 0.5) for name in _EXTENSIONS if name.endswith("color")}
+    numbers = {name: 1.4 if name.endswith("ior") else 0.5 for name in _EXTENSIONS if name not in colors}
+    scene = vernier.load([make_square(material=vernier.Material(**{name: value}))
+                          for name, value in (colors | numbers).items()])
+    features = {feature.name: feature.status for feature in scene.features}
+    assert {extension for extension, _ in _EXTENSIONS.values()} <= set(features)
+    assert "ignored" not in features.values()
 
 
 def refused(part, **rest):

@@ -14,9 +14,10 @@ docs/python.md of the project has more.
 from . import _core
 from ._camera import Camera
 from ._errors import Error, InputError, OutOfMemoryError, OutputError, UsageError
-from ._glb import Light, Material, Mesh, glb
+from ._glb import glb
 from ._image import ErrorEstimate, Image, Missing, MissingFigure, compare, merge, read, to_display
 from ._notices import Notice
+from ._parts import Light, Material, Mesh
 from ._render import LAYERS_FOR_DENOISING, Progress, Session, Settings, render
 from ._scene import Feature, Scene, load
 

@@ -17,8 +17,9 @@ import numpy as np
 from . import _core
 from ._camera import DEFAULT_YFOV, Camera, camera_from_settings
 from ._errors import InputError, UsageError
-from ._glb import Light, Mesh, glb
+from ._glb import glb
 from ._notices import Notice, logged
+from ._parts import Light, Mesh
 
 EnvLike = Union[str, "os.PathLike[str]", np.ndarray, None]
 SceneSource = Union[str, "os.PathLike[str]", bytes, bytearray, memoryview, Mesh, Iterable[Mesh]]
