@@ -18,8 +18,8 @@ import sys
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-BUILD = ROOT / "build" / "release"
-DATABASE = BUILD / "tidy"
+BUILDS = [ROOT / "build" / "release", ROOT / "build" / "python"]  # the latter where .ci/test_python has run
+DATABASE = BUILDS[0] / "tidy"
 CACHE = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "vernier-tidy"
 
 
@@ -30,9 +30,13 @@ def without_precompiled(command):
 
 
 def entries_to_check():
-    """Those of the compilation database that are source files; the database for clang-tidy is written on the way."""
-    entries = json.loads((BUILD / "compile_commands.json").read_text(encoding="utf-8"))
-    entries = [{**entry, "command": shlex.join(without_precompiled(entry["command"]))} for entry in entries
+    """Those of the compilation databases that are source files; the database for clang-tidy is written on the way."""
+    found = {}
+    for build in BUILDS:
+        if build == BUILDS[0] or (build / "compile_commands.json").exists():
+            for entry in json.loads((build / "compile_commands.json").read_text(encoding="utf-8")):
+                found.setdefault(entry["file"], entry)
+    entries = [{**entry, "command": shlex.join(without_precompiled(entry["command"]))} for entry in found.values()
                if "cmake_pch" not in entry["file"]]
     DATABASE.mkdir(parents=True, exist_ok=True)
     (DATABASE / "compile_commands.json").write_text(json.dumps(entries), encoding="utf-8")

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "apps/vernier/flags.h"
-#include "core/base/names.h"
 
 namespace vernier::apps {
 
@@ -22,12 +21,6 @@ bool print_requested_views(const DisplayOptions& options) {
   if (options.view != "help") return false;
   for (const auto& name : display_views(options)) fmt::print("{}\n", name);
   return true;
-}
-
-DisplayOptions with_chosen_view(DisplayOptions options) {
-  const std::vector<std::string> views = display_views(options);
-  options.view = options.view.empty() ? views.front() : find_by_prefix("view", options.view, views);
-  return options;
 }
 
 }  // namespace vernier::apps

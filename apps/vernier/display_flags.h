@@ -15,8 +15,4 @@ void add_display_flags(CLI::App& command, DisplayOptions& options);
 /// Prints the views when `--view help` was asked for; false: it was not.
 bool print_requested_views(const DisplayOptions& options);
 
-/// `options` with the whole name of its view: the one asked for, of which the first letters suffice, else the
-/// config's default. Throws Error(usage) when there is no such view, Error(input) on an unusable config.
-DisplayOptions with_chosen_view(DisplayOptions options);
-
 }  // namespace vernier::apps

@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "vernier/image.h"
+#include "vernier/picture.h"
 
 namespace vernier {
 
@@ -43,13 +43,6 @@ std::span<const Denoiser> denoisers();
 /// The denoiser of that name; throws Error(usage) that lists the names there are, or says how a build with
 /// that one is made.
 const Denoiser& find_denoiser(std::string_view name);
-
-/// The relative RMSE of a picture, sqrt(mean((x - r)^2 / (r^2 + 0.01))) over the pixels that count, with the
-/// ends of a 95 % interval.
-struct DenoisedError {
-  double noisy = 0;  ///< before denoising
-  double rel_rmse = 0, low = 0, high = 0;
-};
 
 /// A picture denoised as two halves, so that its own error, what the filter blurs included, is known.
 struct DenoisedHalves {

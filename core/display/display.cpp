@@ -45,6 +45,12 @@ std::vector<std::string> display_views(const DisplayOptions& options) {
   return DisplayConfig(options.config).views();
 }
 
+DisplayOptions with_chosen_view(DisplayOptions options) {
+  const std::vector<std::string> views = display_views(options);
+  options.view = options.view.empty() ? views.front() : find_by_prefix("view", options.view, views);
+  return options;
+}
+
 Image8 to_display(const Image& scene_linear, const DisplayOptions& options) {
   if (scene_linear.channels < 3) throw Error(ErrorKind::usage, "a picture to display needs three channels");
   const DisplayConfig config(options.config);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,9 @@ class VERNIER_API SceneFile {
  public:
   /// Throws Error(input) as import_scene() does; `allow_outside_files` as in ImportOptions.
   explicit SceneFile(const std::string& path, bool allow_outside_files = false);
+  /// A file whose bytes are in memory and may go afterwards; `name` is what errors call it. It lies in no
+  /// folder, so Error(input) is thrown where it refers to another file.
+  SceneFile(const std::string& name, std::span<const uint8_t> bytes);
   ~SceneFile();
   SceneFile(const SceneFile&) = delete;
   SceneFile& operator=(const SceneFile&) = delete;

@@ -57,10 +57,9 @@ class VERNIER_API RenderSession {
 
   RenderStatus status() const;
   /// R, G, B, scene-linear Rec.709, A if the background is transparent (colours multiplied by it), then the
-  /// channels of `layers`: "error,albedo,...", or "all".
+  /// channels of `layers`: "error,albedo,...", or "all". Its texts say what was sampled and how wrong it is.
   LayeredImage picture(const std::string& layers = "") const;
-  /// The same to a file: .exr with the layers; .png and .jpg as shown by the default view. Its header says
-  /// how wrong it is. Throws Error(output).
+  /// The same to a file, as write_picture() does. Throws Error(output).
   void write(const std::string& path, const std::string& layers = "") const;
 
   /// All that is known, for the project's own programs.

@@ -43,6 +43,10 @@ double samples_per_pixel(const RenderResult& result) {
   return double(result.samples) / (double(result.film.width()) * result.film.height());
 }
 
+RenderStatus status_of(const RenderResult& r) {
+  return {r.seconds, samples_per_pixel(r), r.samples, r.rays, r.error, r.missing, r.bad_samples};
+}
+
 Metadata result_metadata(const RenderResult& result) {
   Metadata metadata = {{"Software", fmt::format("vernier {}", version())},
                        {"vernier:samples", fmt::format("{}", result.samples)},
@@ -118,6 +122,31 @@ std::vector<unsigned char> encode_picture(const std::string& format, const Layer
   }
   add_display(metadata, display);
   return encode_image8(format, displayed("picture." + format, picture, display), metadata);
+}
+
+Image8 to_display(const LayeredImage& picture, const DisplayOptions& options) {
+  const DisplayOptions chosen = with_chosen_view(options);
+  return to_display(alpha_of(picture) ? color_and_alpha(picture).image : picture.rgb(), chosen);
+}
+
+LayeredImage read_picture(const std::string& path) {
+  LayeredImage picture = read_layers(path);
+  if (picture.linear) return picture;
+  picture.metadata = read_image_texts(path).value_or(Metadata{});
+  picture.metadata.erase("ImageDescription");  // its lines are texts by themselves
+  return picture;
+}
+
+void write_picture(const std::string& path, const LayeredImage& picture, const DisplayOptions& display) {
+  check_image_name(path);
+  const bool is_shown = is_display_file(path);
+  write_picture(path, picture, picture.metadata, is_shown ? with_chosen_view(display) : display);
+}
+
+std::vector<unsigned char> encode_picture(const std::string& format, const LayeredImage& picture,
+                                          const DisplayOptions& display) {
+  const bool is_shown = format != "exr";
+  return encode_picture(format, picture, picture.metadata, is_shown ? with_chosen_view(display) : display);
 }
 
 }  // namespace vernier

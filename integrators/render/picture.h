@@ -16,6 +16,8 @@ namespace vernier {
 /// Samples a pixel, on average.
 double samples_per_pixel(const RenderResult& result);
 
+RenderStatus status_of(const RenderResult& result);
+
 /// Header entries that say what was sampled, and how wrong it is.
 Metadata result_metadata(const RenderResult& result);
 

@@ -9,7 +9,7 @@
 
 #include "core/base/build.h"
 #include "core/base/names.h"
-#include "core/display/display.h"
+#include "core/image/image_io.h"
 #include "integrators/render/backdrop.h"
 #include "integrators/render/checkpoint.h"
 #include "integrators/render/layers.h"
@@ -209,26 +209,24 @@ std::vector<Notice> RenderSession::load(const std::string& path) {
 
 RenderStatus RenderSession::status() const {
   const Use use(state_->user);
-  const RenderResult& r = state_->render.so_far;
-  return {r.seconds, samples_per_pixel(r), r.samples, r.rays, r.error, r.missing, r.bad_samples};
+  return status_of(state_->render.so_far);
 }
 
 LayeredImage RenderSession::picture(const std::string& layers) const {
   const Use use(state_->user);
-  LayeredImage picture = with_layers(state_->render.so_far, find_layers(layers), *state_->scene,
-                                     state_->camera, state_->settings);
+  const RenderResult& so_far = state_->render.so_far;
   const RenderSettings& settings = state_->settings;
+  LayeredImage picture = with_layers(so_far, find_layers(layers), *state_->scene, state_->camera, settings);
   if (settings.crop.width > 0)
     picture.place = {settings.crop.x, settings.crop.y, settings.width, settings.height};
+  picture.metadata.merge(result_metadata(so_far));
   return picture;
 }
 
 void RenderSession::write(const std::string& path, const std::string& layers) const {
   const Use use(state_->user);
   check_writable_image(path);
-  DisplayOptions display;
-  if (is_display_file(path)) display.view = display_views(display).front();
-  write_picture(path, picture(layers), result_metadata(state_->render.so_far), display);
+  write_picture(path, picture(layers));
 }
 
 const RenderResult& RenderSession::result() const { return state_->render.so_far; }

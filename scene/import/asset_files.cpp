@@ -102,7 +102,11 @@ AssetFiles::AssetFiles(std::string scene_path, bool allow_outside)
 }
 
 Bytes AssetFiles::read_scene() const {
-  Bytes bytes;
+  Bytes bytes(in_memory_ ? in_memory_->size() : 0);
+  if (in_memory_) {
+    std::copy(in_memory_->begin(), in_memory_->end(), bytes.data.get());
+    return bytes;
+  }
   const std::string problem =
       scene_path_ == standard_input ? read_standard_input(bytes) : read_regular_file(scene_path_, 0, bytes);
   if (!problem.empty()) throw Error(ErrorKind::input, scene_path_, "", "cannot be read: " + problem);
@@ -121,6 +125,10 @@ AssetContent AssetFiles::read_reference(const std::string& uri, const std::strin
   const auto refuse = [&](const std::string& problem) {
     throw Error(ErrorKind::input, scene_path_, place, fmt::format("{} {}", quoted, problem));
   };
+  if (in_memory_)
+    refuse(
+        "is another file, and a scene in memory lies in no folder; read the scene from its file, or put all "
+        "into one .glb");
   if (has_scheme(uri)) refuse("is not a path relative to the scene file; only those and data URIs are read");
   const std::string name = percent_decoded(uri);
   if (name.empty() || name.find('\0') != std::string::npos) refuse("is not a file name");

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 namespace vernier {
 
@@ -27,11 +29,15 @@ struct AssetContent {
 
 /// Reads the scene file and what its URIs refer to, all of it regular files, and all of it inside the scene
 /// file's folder unless `allow_outside` is given. A scene called "-" comes from standard input, and is taken
-/// for a file in the current folder. Callable from many threads.
+/// for a file in the current folder; one that is in memory lies in no folder and refers to no files. Callable
+/// from many threads.
 class AssetFiles {
  public:
   /// Throws Error(input) when the scene file's folder cannot be read.
   explicit AssetFiles(std::string scene_path, bool allow_outside = false);
+  /// A scene file in memory, which must last until it was read; `name` is what errors call it.
+  AssetFiles(std::string name, std::span<const uint8_t> scene)
+      : scene_path_(std::move(name)), in_memory_(scene) {}
 
   const std::string& scene_path() const { return scene_path_; }
   /// Throws Error(input).
@@ -47,7 +53,8 @@ class AssetFiles {
   static constexpr const char* standard_input = "-";
 
   std::string scene_path_;
-  std::string folder_;  ///< canonical
+  std::optional<std::span<const uint8_t>> in_memory_;  ///< none: it is a file
+  std::string folder_;                                 ///< canonical
   bool allow_outside_ = false;
 };
 

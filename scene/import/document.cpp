@@ -61,7 +61,8 @@ bool is_meshopt_fallback(const json& buffer) {
 
 }  // namespace
 
-Document::Document(const std::string& path, bool allow_outside_files) : files_(path, allow_outside_files) {
+Document::Document(AssetFiles files) : files_(std::move(files)) {
+  const std::string& path = files_.scene_path();
   Bytes file = files_.read_scene();
   fingerprints_.push_back(fingerprint(file.span()));
   const Container container = split_container(file.span(), path);

@@ -25,8 +25,8 @@ struct ImageSource {
 /// `model.images` are empty.
 class Document {
  public:
-  /// Reads the scene file and its buffers; `allow_outside_files` as in ImportOptions. Throws Error(input).
-  explicit Document(const std::string& path, bool allow_outside_files = false);
+  /// Reads the scene file and its buffers. Throws Error(input).
+  explicit Document(AssetFiles files);
 
   const AssetFiles& files() const { return files_; }
   const tinygltf::Model& model() const { return model_; }

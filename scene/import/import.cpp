@@ -118,9 +118,8 @@ std::string combined_fingerprint(const std::vector<std::string>& parts) {
 /// The file as far as it depends on neither time nor variant.
 class SceneFile::Content {
  public:
-  Content(const std::string& path, bool allow_outside_files)
-      : path_(path),
-        document_(path, allow_outside_files),
+  explicit Content(AssetFiles files)
+      : document_(std::move(files)),
         features_(report_features(document_.model())),
         materials_(read_materials(document_, material_notices_)) {}
 
@@ -139,7 +138,6 @@ class SceneFile::Content {
     std::vector<std::string> fingerprints;
   };
 
-  std::string path_;
   Document document_;
   std::vector<FeatureUse> features_;
   std::vector<Notice> material_notices_;
@@ -151,7 +149,7 @@ class SceneFile::Content {
 
 SceneDescription SceneFile::Content::describe(const ImportOptions& options, bool keep) {
   SceneDescription scene;
-  scene.source = path_;
+  scene.source = document_.files().scene_path();
   scene.features = features_;
   scene.notices = document_.notices();
   append(feature_notices(features_), scene.notices);
@@ -207,7 +205,9 @@ void SceneFile::Content::add_environment(SceneDescription& scene, std::vector<st
 }
 
 SceneFile::SceneFile(const std::string& path, bool allow_outside_files)
-    : content_(std::make_unique<Content>(path, allow_outside_files)) {}
+    : content_(std::make_unique<Content>(AssetFiles(path, allow_outside_files))) {}
+SceneFile::SceneFile(const std::string& name, std::span<const uint8_t> bytes)
+    : content_(std::make_unique<Content>(AssetFiles(name, bytes))) {}
 SceneFile::~SceneFile() = default;
 
 SceneDescription SceneFile::describe(const ImportOptions& options) {
@@ -217,7 +217,7 @@ SceneDescription SceneFile::describe(const ImportOptions& options) {
 std::vector<std::string> SceneFile::variants() const { return variant_names(content_->document()); }
 
 SceneDescription import_scene(const std::string& path, const ImportOptions& options) {
-  return SceneFile::Content(path, options.allow_outside_files).describe(options, false);
+  return SceneFile::Content(AssetFiles(path, options.allow_outside_files)).describe(options, false);
 }
 
 void refuse_warnings(const std::string& path, std::span<const Notice> notices) {

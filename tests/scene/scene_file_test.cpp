@@ -57,6 +57,10 @@ void expect_same(const SceneDescription& a, const SceneDescription& b) {
   for (size_t i = 0; i < a.notices.size(); ++i) EXPECT_EQ(a.notices[i].text, b.notices[i].text);
 }
 
+std::span<const uint8_t> as_bytes(const std::string& text) {
+  return {reinterpret_cast<const uint8_t*>(text.data()), text.size()};
+}
+
 TEST(SceneFile, DescribesTheSameAsReadingAnewAtAnyTime) {
   const TemporaryFolder folder;
   const std::string path = moving_scene().save(folder);
@@ -93,6 +97,30 @@ TEST(SceneFile, NamesItsVariants) {
   file.json["extensionsUsed"] = {"KHR_materials_variants"};
   file.json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "b"}}, {{"name", "a"}}};
   EXPECT_EQ(SceneFile(file.save(folder)).variants(), (std::vector<std::string>{"b", "a"}));
+}
+
+TEST(SceneFile, IsTheSameFromMemory) {
+  const TemporaryFolder folder;
+  std::string bytes = moving_scene().glb();
+  const std::string path = folder.write("scene.glb", bytes);
+  SceneFile file("a name", as_bytes(bytes));
+  std::fill(bytes.begin(), bytes.end(), '\0');  // they may go
+  const SceneDescription description = file.describe();
+  expect_same(description, import_scene(path));
+  EXPECT_EQ(description.source, "a name");
+}
+
+TEST(SceneFile, InMemoryRefersToNoFiles) {
+  const TemporaryFolder folder;
+  const std::string bytes = read_file(moving_scene().save(folder));
+  try {
+    SceneFile("memory", as_bytes(bytes)).describe();
+    FAIL() << "data.bin is in no folder";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::input);
+    EXPECT_EQ(std::string(error.what()).find("memory: /buffers/0/uri: 'data.bin' is another file"), 0u)
+        << error.what();
+  }
 }
 
 }  // namespace
