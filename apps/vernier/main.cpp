@@ -18,8 +18,9 @@ namespace {
 
 /// Every subcommand, in the order of `vernier --help`.
 constexpr void (*subcommands[])(Program&) = {
-    register_render,  register_info,  register_verify,  register_compare, register_denoise,
-    register_develop, register_merge, register_gallery, register_bench,   register_cli_files,
+    register_render,  register_info,    register_verify,    register_compare,
+    register_denoise, register_develop, register_merge,     register_gallery,
+    register_farm,    register_bench,   register_cli_files,
 };
 
 /// The subcommand that was being read when parsing failed, innermost.
@@ -91,6 +92,7 @@ ExitCode parse_failed(const CLI::App& app, const CLI::ParseError& error) {
 
 ExitCode run_program(int argc, char** argv) {
   Program program;
+  program.name = argv[0];
   program.command_line = shell_quoted({argv, static_cast<size_t>(argc)});
   program.app.name("vernier");
   program.app.description("CPU renderer for glTF 2.0 scenes.");
