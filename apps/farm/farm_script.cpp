@@ -107,7 +107,7 @@ std::string slurm_script(const FarmPlan& plan) {
   sbatch.insert(sbatch.end(), plan.sbatch.begin(), plan.sbatch.end());
   std::string script = head(plan, "#   bash SCRIPT   submits all of it; again, to go on where it ended\n") +
                        text("work", plan.work) + counts(plan) + text("name", plan.output);
-  if (!plan.is_animation()) script += text("merge_when", plan.seeds.skip_missing ? "afterany" : "afterok");
+  script += text("merge_when", plan.seeds.skip_missing ? "afterany" : "afterok");
   return script + array("sbatch", sbatch) + bodies(plan, farm_assets::slurm_sh);
 }
 

@@ -3,7 +3,7 @@
 
 # part_command ROUND PART: sets `command` to what renders the part, or goes on with it.
 part_command() {
-  local file=$folder/{frame}.ckpt
+  local file="$folder/{frame}.ckpt"
   command=("$vernier" render "${render[@]}" --frames "${frames[$2 - 1]}" --skip-existing
     --checkpoint "$file" --resume "$file" --drop-checkpoint)
 }
