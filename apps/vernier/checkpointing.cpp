@@ -37,6 +37,8 @@ void add_checkpoint_flags(CLI::App& command, RenderFlags& flags) {
       .add_option("--resume", flags.resume,
                   "go on from this checkpoint, to the limits given now; they count from the beginning")
       ->type_name("FILE");
+  command.add_flag("--drop-checkpoint", flags.drop_checkpoint,
+                   "remove the checkpoint when the picture is finished and written");
 }
 
 void require_resumable(const RenderFlags& flags) {
@@ -44,6 +46,7 @@ void require_resumable(const RenderFlags& flags) {
 }
 
 Checkpointing::Checkpointing(const RenderFlags& flags, NoticeLog& log) : flags_(flags), log_(log) {
+  if (!flags.checkpoint.empty()) lock_.emplace(flags.checkpoint);
   if (flags.resume.empty()) return;
   require_resumable(flags);
   resumes_ = !begins_anew(flags);
@@ -96,6 +99,11 @@ void Checkpointing::add_to(nlohmann::ordered_json& stats) const {
 
 void Checkpointing::require_written() const {
   if (!failure_.empty()) throw Error(ErrorKind::output, failure_);
+}
+
+void Checkpointing::drop_if_asked() const {
+  std::error_code error;  // a file that stays does no harm
+  if (flags_.drop_checkpoint) std::filesystem::remove(flags_.checkpoint, error);
 }
 
 }  // namespace vernier::apps

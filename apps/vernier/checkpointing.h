@@ -7,6 +7,7 @@
 
 #include "apps/vernier/notice_log.h"
 #include "apps/vernier/render_flags.h"
+#include "core/base/file_lock.h"
 #include "vernier/session.h"
 
 namespace vernier::apps {
@@ -20,7 +21,7 @@ void require_resumable(const RenderFlags& flags);
 /// What they ask of one render.
 class Checkpointing {
  public:
-  /// Throws Error as require_resumable() does.
+  /// Throws Error as require_resumable() does, and Error(output) while another process writes the checkpoint.
   Checkpointing(const RenderFlags& flags, NoticeLog& log);
 
   /// Lets `session` go on from the checkpoint and write new ones. Throws Error(input) when the checkpoint is
@@ -34,11 +35,15 @@ class Checkpointing {
   /// for a full disk may have room later and hours should not be lost to it.
   void require_written() const;
 
+  /// To be called when the picture is finished and written.
+  void drop_if_asked() const;
+
  private:
   void write(const RenderSession& session);
 
   const RenderFlags& flags_;
   NoticeLog& log_;
+  std::optional<FileLock> lock_;  ///< of the checkpoint to be written
   bool resumes_ = false;
   std::string failure_;  ///< of the last attempt; empty: it went well
   double seconds_ = 0;   ///< spent writing

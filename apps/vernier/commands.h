@@ -28,6 +28,7 @@ ExitCode exit_code(ErrorKind kind);
 /// The program while its command line is read.
 struct Program {
   CLI::App app;
+  std::string name;               ///< by which it was called: a path, or what was found in $PATH
   std::string command_line;       ///< as typed, quoted where the shell needs it
   std::function<ExitCode()> run;  ///< set by the chosen subcommand's callback; may throw vernier::Error
 };
@@ -45,6 +46,7 @@ void register_compare(Program& program);
 void register_denoise(Program& program);
 void register_develop(Program& program);
 void register_gallery(Program& program);
+void register_farm(Program& program);
 void register_merge(Program& program);
 void register_bench(Program& program);
 void register_cli_files(Program& program);

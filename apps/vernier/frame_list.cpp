@@ -2,6 +2,7 @@
 #include "apps/vernier/frame_list.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <charconv>
 #include <optional>
@@ -74,6 +75,15 @@ std::vector<int> parse_frames(std::string_view text) {
     begin = end + 1;
   }
   return {frames.begin(), frames.end()};
+}
+
+std::string frames_text(std::span<const int> frames) {
+  if (frames.size() < 2) return fmt::format("{}", fmt::join(frames.begin(), frames.end(), ","));
+  const int step = frames[1] - frames[0];
+  for (size_t i = 1; i < frames.size(); ++i)
+    if (frames[i] - frames[i - 1] != step)
+      return fmt::format("{}", fmt::join(frames.begin(), frames.end(), ","));
+  return fmt::format("{}-{}{}", frames.front(), frames.back(), step > 1 ? fmt::format("x{}", step) : "");
 }
 
 }  // namespace vernier::apps

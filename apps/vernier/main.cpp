@@ -21,8 +21,9 @@ namespace {
 
 /// Every subcommand, in the order of `vernier --help`.
 constexpr void (*subcommands[])(Program&) = {
-    register_render,  register_info,  register_verify,  register_compare, register_denoise,
-    register_develop, register_merge, register_gallery, register_bench,   register_cli_files,
+    register_render,  register_info,    register_verify,    register_compare,
+    register_denoise, register_develop, register_merge,     register_gallery,
+    register_farm,    register_bench,   register_cli_files,
 };
 
 /// The subcommand that was being read when parsing failed, innermost.
@@ -105,6 +106,7 @@ bool asks_for_json(std::span<const char* const> words) {
 
 ExitCode run_program(int argc, char** argv) {
   Program program;
+  program.name = argv[0];
   const std::span<const char* const> words(argv, static_cast<size_t>(argc));
   program.command_line = shell_quoted(words);
   if (asks_for_json(words)) speak_json({{"vernier", version()}, {"command", program.command_line}});

@@ -68,4 +68,11 @@ std::string shell_quoted(std::span<const char* const> words) {
   return line;
 }
 
+std::string shell_quoted(const std::vector<std::string>& words) {
+  std::vector<const char*> pointers;
+  pointers.reserve(words.size());
+  for (const std::string& word : words) pointers.push_back(word.c_str());
+  return shell_quoted(pointers);
+}
+
 }  // namespace vernier::apps

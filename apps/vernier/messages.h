@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/one_line.h"
 #include "vernier/error.h"
@@ -32,5 +33,6 @@ std::string describe(const Notice& notice);
 
 /// The words of a command line as a shell would read them back: quoted where that is needed.
 std::string shell_quoted(std::span<const char* const> words);
+std::string shell_quoted(const std::vector<std::string>& words);
 
 }  // namespace vernier::apps

@@ -10,28 +10,32 @@ namespace {
 
 /// Flags that say where pictures go, which of them are made, and what is said meanwhile.
 const std::set<std::string> not_of_the_picture{
-    "--output", "--format",      "--stats",      "--report",  "--checkpoint",   "--checkpoint-every",
-    "--resume", "--progress",    "--quiet",      "--verbose", "--threads",      "--frames",
-    "--fps",    "--write-every", "--keep-going", "--help",    "--skip-existing"};
+    "--output", "--format",      "--stats",      "--report",  "--checkpoint",    "--checkpoint-every",
+    "--resume", "--progress",    "--quiet",      "--verbose", "--threads",       "--frames",
+    "--fps",    "--write-every", "--keep-going", "--help",    "--skip-existing", "--drop-checkpoint"};
 
 }  // namespace
 
-PictureCommand::PictureCommand(const CLI::App& render) {
-  for (const CLI::Option* option : render.get_options()) {
+std::vector<CommandFlag> flags_of(const CLI::App& command) {
+  std::vector<CommandFlag> flags;
+  for (const CLI::Option* option : command.get_options()) {
     if (option->get_lnames().empty()) continue;
-    Flag flag{"--" + option->get_lnames().front(), {}, option->count() > 0};
+    CommandFlag flag{"--" + option->get_lnames().front(), {}, option->count() > 0};
     const bool takes_value = option->get_items_expected_max() > 0;
     if (flag.is_given && takes_value)
       for (const std::string& value : option->results())
         if (!value.empty()) flag.values.push_back(value);
-    flags_.push_back(std::move(flag));
+    flags.push_back(std::move(flag));
   }
+  return flags;
 }
+
+PictureCommand::PictureCommand(const CLI::App& render) : flags_(flags_of(render)) {}
 
 std::string PictureCommand::text(const std::string& scene,
                                  const std::map<std::string, std::string>& instead) const {
   std::vector<std::string> words{"vernier", "render", scene};
-  for (const Flag& flag : flags_) {
+  for (const CommandFlag& flag : flags_) {
     const auto other = instead.find(flag.name);
     if (other == instead.end() ? !flag.is_given || not_of_the_picture.contains(flag.name)
                                : other->second.empty())
@@ -42,10 +46,7 @@ std::string PictureCommand::text(const std::string& scene,
     else
       words.insert(words.end(), flag.values.begin(), flag.values.end());
   }
-  std::vector<const char*> pointers;
-  pointers.reserve(words.size());
-  for (const std::string& word : words) pointers.push_back(word.c_str());
-  return shell_quoted(pointers);
+  return shell_quoted(words);
 }
 
 }  // namespace vernier::apps

@@ -8,6 +8,16 @@
 
 namespace vernier::apps {
 
+/// A flag of a command, and whether and how it was given.
+struct CommandFlag {
+  std::string name;                 ///< the first long one
+  std::vector<std::string> values;  ///< empty, but given: it takes none
+  bool is_given = false;
+};
+
+/// All of a command that has been parsed, in the order of --help, but for arguments without a flag.
+std::vector<CommandFlag> flags_of(const CLI::App& command);
+
 /// What of a `vernier render` command a picture depends on, for its header: a command that makes this picture
 /// alone. So a frame has the same bytes as when it is rendered by itself, to any file and on any number of
 /// threads.
@@ -21,12 +31,7 @@ class PictureCommand {
   std::string text(const std::string& scene, const std::map<std::string, std::string>& instead) const;
 
  private:
-  struct Flag {
-    std::string name;
-    std::vector<std::string> values;  ///< empty, but given: it takes none
-    bool is_given = false;
-  };
-  std::vector<Flag> flags_;  ///< that pictures depend on, in the order of --help
+  std::vector<CommandFlag> flags_;
 };
 
 }  // namespace vernier::apps

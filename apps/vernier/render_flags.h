@@ -48,6 +48,7 @@ struct RenderFlags {
   std::string stats, report;
   std::string checkpoint, resume;  ///< files; empty: none
   std::string checkpoint_every = "5m";
+  bool drop_checkpoint = false;
   bool quiet = false, verbose = false;
 
   RunFlags run;

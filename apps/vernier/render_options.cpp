@@ -119,6 +119,17 @@ void check_standard_output(const RenderFlags& flags) {
     throw Error(ErrorKind::usage, "--format needs -o -; the names of files tell their format");
 }
 
+/// A render that is to be gone on with or merged needs no picture.
+void check_outputs(const RenderFlags& flags) {
+  const auto refuse = [](const char* problem) { throw Error(ErrorKind::usage, problem); };
+  if (flags.outputs.empty() && flags.checkpoint.empty())
+    refuse("missing -o FILE (.exr, .png, .jpg) or --checkpoint FILE; see vernier render --help");
+  if (flags.outputs.empty() && flags.run.skip_existing)
+    refuse("--skip-existing looks for pictures, of which none is asked for; give -o FILE");
+  if (flags.drop_checkpoint && (flags.outputs.empty() || flags.checkpoint.empty()))
+    refuse("--drop-checkpoint needs --checkpoint FILE, which it removes, and -o FILE, which is then there");
+}
+
 /// Outputs by names that tell their format.
 std::vector<std::string> named_outputs(const RenderFlags& flags) {
   std::vector<std::string> names = flags.outputs;
@@ -169,8 +180,7 @@ void check_picture_size(const RenderSettings& options, const MemoryUse& use) {
 
 RenderRequest check_render_flags(const RenderFlags& given) {
   require_scene(given.run.scenes.empty() ? "" : given.run.scenes.front(), "render");
-  if (given.outputs.empty())
-    throw Error(ErrorKind::usage, "missing -o FILE (.exr, .png, .jpg); see vernier render --help");
+  check_outputs(given);
   check_standard_output(given);
   Stopwatch watch;
   RenderRequest request;

@@ -103,6 +103,7 @@ PictureOutcome render_picture(const RenderRequest& request, PosedScene& posed, c
   report.command_line = context.command_line;
   report.picture_command = context.picture_command;
   report.threads = thread_count();
+  if (flags.outputs.empty()) report.kept = flags.checkpoint;
   prepare(request, posed, view, report, log);
   RenderSession session(posed.scene(), report.settings);
   checkpointing.attach(session);
@@ -140,6 +141,7 @@ PictureOutcome render_picture(const RenderRequest& request, PosedScene& posed, c
   outputs.attempt([&] { checkpointing.require_written(); });
   const bool is_stopped = result.reason == StopReason::interrupted;
   if (outputs.have_failed()) return {ExitCode::input, is_stopped};
+  if (!is_stopped) checkpointing.drop_if_asked();
   return {is_stopped ? ExitCode::stopped : ExitCode::done, is_stopped};
 }
 

@@ -92,6 +92,11 @@ Json bad_samples_json(const RenderResult& result) {
   return {{"count", result.bad_samples}, {"examples", examples}};
 }
 
+std::string written(const RenderReport& report) {
+  if (!report.files.empty()) return fmt::format("{}", fmt::join(report.files, ", "));
+  return report.kept.empty() ? "nothing" : report.kept;
+}
+
 /// What was asked for and not reached, if anything.
 std::string shortfall(const RenderReport& report, const RenderResult& result) {
   if (result.reason == StopReason::interrupted) return "; interrupted";
@@ -191,8 +196,7 @@ std::string scene_lines(const RenderReport& report) {
 
 std::string summary_line(const RenderReport& report, const RenderResult& result) {
   return fmt::format("wrote {}: {}x{}, {:.4g} spp{}, load {}, build {}, render {}, {} rays/s{}",
-                     report.files.empty() ? "nothing" : fmt::format("{}", fmt::join(report.files, ", ")),
-                     result.film.width(), result.film.height(), samples_per_pixel(result),
+                     written(report), result.film.width(), result.film.height(), samples_per_pixel(result),
                      error_text(result.error) + missing_text(result.missing),
                      format_seconds(report.load_seconds), format_seconds(report.build_seconds),
                      format_seconds(result.seconds), format_count(rate(total(result.rays), result.seconds)),

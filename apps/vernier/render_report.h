@@ -26,6 +26,7 @@ struct RenderReport {
   AcceleratorStats accelerator_stats;
   RenderSettings settings;
   unsigned threads = 0;
+  std::string kept;                ///< checkpoint, where no picture is asked for
   std::vector<std::string> files;  ///< pictures that have been written
   double load_seconds = 0;         ///< reading the scene and the environment
   double build_seconds = 0;        ///< from the description to a scene that answers rays

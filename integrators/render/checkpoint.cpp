@@ -6,15 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <filesystem>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/base/atomic_file.h"
 #include "core/base/fingerprint.h"
+#include "integrators/render/checkpoint_file.h"
 #include "vernier/error.h"
 
 namespace vernier {
@@ -25,19 +23,6 @@ using Json = nlohmann::ordered_json;
 static_assert(std::endian::native == std::endian::little, "checkpoints are little-endian");
 static_assert(sizeof(RenderResult::Look) == 6 * sizeof(double));
 static_assert(sizeof(TileLight) == 10 * sizeof(float));
-
-constexpr uint32_t format = 4;
-constexpr size_t fingerprint_length = 32;
-constexpr uint32_t longest_header = 1 << 20;
-
-/// How a file begins.
-struct Preamble {
-  std::array<char, 8> magic{'V', 'E', 'R', 'N', 'C', 'K', 'P', 'T'};
-  uint32_t format = vernier::format;
-  uint32_t header_length = 0;
-  std::array<char, fingerprint_length> header_fingerprint{};  ///< hexadecimal, of the header
-};
-static_assert(sizeof(Preamble) == 16 + fingerprint_length);
 
 /// Constant bytes of constant values.
 template <typename Values>
@@ -84,71 +69,19 @@ Json header_of(const RenderIdentity& identity, const RenderState& state) {
               {"bad_samples", so_far.bad_samples},
               {"arrays", Json::array()}};
   for (const LightFilm& part : so_far.light) header["light_layers"].push_back(part.layer);
+  if (!so_far.convergence.empty()) {
+    const RenderResult::Look& look = so_far.convergence.back();
+    header["look"] = {{"samples_per_pixel", look.samples_per_pixel}, {"rel_rmse", look.error.rel_rmse}};
+  }
   for (const auto& [name, value] : identity) header["render"].push_back(Json::array({name, value}));
   return header;
-}
-
-/// Reads a file from its beginning to its end.
-class Reader {
- public:
-  explicit Reader(const std::string& path) : path_(path) {
-    std::error_code error;
-    // Opening a pipe would wait for its writer.
-    if (std::filesystem::is_other(path, error)) refuse("is not a regular file");
-    file_.reset(std::fopen(path.c_str(), "rb"));
-    if (file_) left_ = std::filesystem::file_size(path, error);
-    if (!file_ || error)
-      throw Error(ErrorKind::input, path, {},
-                  fmt::format("cannot be read: {}", error ? error.message() : std::strerror(errno)));
-  }
-
-  uintmax_t left() const { return left_; }
-  void read(std::span<std::byte> bytes) {
-    if (bytes.empty()) return;  // an empty array need not be anywhere, and fread wants a place
-    if (bytes.size() > left_ || std::fread(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size())
-      damaged("it is cut short");
-    left_ -= bytes.size();
-  }
-  [[noreturn]] void damaged(const std::string& how) const {
-    // What the file holds is quoted in `how` and may be long.
-    throw Error(ErrorKind::input, path_, {},
-                fmt::format("is damaged: {:.200}; use another checkpoint or render without --resume", how));
-  }
-  [[noreturn]] void refuse(const std::string& reason) const {
-    throw Error(ErrorKind::input, path_, {}, reason);
-  }
-
- private:
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  std::string path_;
-  std::unique_ptr<std::FILE, Close> file_;
-  uintmax_t left_ = 0;
-};
-
-Json read_header(Reader& reader) {
-  Preamble preamble;
-  if (reader.left() < sizeof(preamble)) reader.refuse("is not a checkpoint of 'vernier render'");
-  reader.read(std::as_writable_bytes(std::span(&preamble, 1)));
-  if (preamble.magic != Preamble().magic) reader.refuse("is not a checkpoint of 'vernier render'");
-  if (preamble.format != format)
-    reader.refuse(
-        fmt::format("is a checkpoint of format {}; this version reads format {}", preamble.format, format));
-  if (preamble.header_length > longest_header) reader.damaged("its header is too long");
-  std::string text(preamble.header_length, ' ');
-  reader.read(std::as_writable_bytes(std::span(text)));
-  if (fingerprint(std::as_bytes(std::span(text))) !=
-      std::string_view(preamble.header_fingerprint.data(), fingerprint_length))
-    reader.damaged("its header has changed");
-  return Json::parse(text);
 }
 
 // Fingerprints tell damage, not malice: everything read below is checked before it is used or memory is taken
 // for it.
 
 /// A number of the header, at most `most`.
-uint64_t whole_number(const Reader& reader, const Json& value, const char* name,
+uint64_t whole_number(const CheckpointReader& reader, const Json& value, const char* name,
                       uint64_t most = std::numeric_limits<int64_t>::max()) {
   if (!value.is_number_unsigned() || value.get<uint64_t>() > most)
     reader.damaged(fmt::format("'{}' is not a whole number from 0 to {}", name, most));
@@ -157,7 +90,7 @@ uint64_t whole_number(const Reader& reader, const Json& value, const char* name,
 
 /// The state with its numbers, and its arrays still to be read into; `counts` are the plan's. Arrays have the
 /// sizes that follow from the numbers, the file says the same, and it is as long as all of them.
-std::shared_ptr<RenderState> allocate_state(const Reader& reader, const Json& header,
+std::shared_ptr<RenderState> allocate_state(const CheckpointReader& reader, const Json& header,
                                             SamplePlan::Numbers& pass) {
   constexpr uint64_t longest_side = 1 << 16;
   const size_t width = whole_number(reader, header.at("width"), "width", longest_side);
@@ -216,7 +149,7 @@ std::shared_ptr<RenderState> allocate_state(const Reader& reader, const Json& he
 }
 
 /// Totals of the header.
-void read_totals(const Reader& reader, const Json& header, RenderResult& so_far) {
+void read_totals(const CheckpointReader& reader, const Json& header, RenderResult& so_far) {
   so_far.samples = whole_number(reader, header.at("samples"), "samples");
   so_far.bad_samples = whole_number(reader, header.at("bad_samples"), "bad_samples", so_far.samples);
   const Json& rays = header.at("rays");
@@ -229,7 +162,7 @@ void read_totals(const Reader& reader, const Json& header, RenderResult& so_far)
   so_far.seconds = seconds;
 }
 
-void read_state(Reader& reader, const Json& header, Checkpoint& checkpoint) {
+void read_state(CheckpointReader& reader, const Json& header, Checkpoint& checkpoint) {
   for (const Json& pair : header.at("render"))
     checkpoint.identity.emplace_back(pair.at(0).get<std::string>(), pair.at(1).get<std::string>());
   SamplePlan::Numbers pass;
@@ -261,19 +194,20 @@ void write_checkpoint(const std::string& path, const RenderIdentity& identity, c
     parts.push_back(array);
   });
   const std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
-  Preamble preamble;
+  CheckpointPreamble preamble;
   preamble.header_length = uint32_t(text.size());
-  fingerprint(std::as_bytes(std::span(text))).copy(preamble.header_fingerprint.data(), fingerprint_length);
+  fingerprint(std::as_bytes(std::span(text)))
+      .copy(preamble.header_fingerprint.data(), preamble.header_fingerprint.size());
   parts[0] = std::as_bytes(std::span(&preamble, 1));
   parts[1] = std::as_bytes(std::span(text));
   write_file(path, parts);
 }
 
 Checkpoint read_checkpoint(const std::string& path) {
-  Reader reader(path);
+  CheckpointReader reader(path);
   Checkpoint checkpoint;
   try {
-    read_state(reader, read_header(reader), checkpoint);
+    read_state(reader, read_checkpoint_header(reader), checkpoint);
   } catch (const Json::exception& error) {
     reader.damaged(error.what());
   }
@@ -281,12 +215,29 @@ Checkpoint read_checkpoint(const std::string& path) {
 }
 
 void require_checkpoint(const std::string& path) {
-  Reader reader(path);
+  CheckpointReader reader(path);
   try {
-    read_header(reader);
+    read_checkpoint_header(reader);
   } catch (const Json::exception& error) {
     reader.damaged(error.what());
   }
+}
+
+CheckpointSummary read_checkpoint_summary(const std::string& path) {
+  CheckpointReader reader(path);
+  CheckpointSummary summary;
+  try {
+    const Json header = read_checkpoint_header(reader);
+    const double pixels = header.at("width").get<double>() * header.at("height").get<double>();
+    summary.samples_per_pixel = header.at("samples").get<double>() / pixels;
+    const auto look = header.find("look");
+    if (look == header.end() || !look->at("rel_rmse").is_number()) return summary;
+    const double then = look->at("samples_per_pixel").get<double>();
+    summary.rel_rmse = look->at("rel_rmse").get<double>() * std::sqrt(then / summary.samples_per_pixel);
+  } catch (const Json::exception& error) {
+    reader.damaged(error.what());
+  }
+  return summary;
 }
 
 std::string take(RenderIdentity& identity, const std::string& name) {

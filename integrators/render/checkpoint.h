@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "integrators/render/render_state.h"
@@ -27,6 +28,14 @@ Checkpoint read_checkpoint(const std::string& path);
 
 /// Throws Error(input) when the file does not begin as a checkpoint of this version does.
 void require_checkpoint(const std::string& path);
+
+/// What a file says of its render without being read further.
+struct CheckpointSummary {
+  double samples_per_pixel = 0;
+  std::optional<double> rel_rmse;  ///< about; none: it has not been looked at
+};
+/// Throws Error(input) as require_checkpoint() does.
+CheckpointSummary read_checkpoint_summary(const std::string& path);
 
 /// Throws Error(input) that names what differs when `checkpoint`, read from `path`, is of another render than
 /// `wanted`.

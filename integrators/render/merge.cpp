@@ -45,6 +45,7 @@ void Merged::add(const std::string& path) {
   if (!result_) {
     identity_ = std::move(checkpoint.identity);
     result_ = std::move(more);
+    light_ = std::move(checkpoint.state->light);
     return;
   }
   require_same_render(path, checkpoint.identity, identity_);
@@ -53,6 +54,8 @@ void Merged::add(const std::string& path) {
     throw Error(ErrorKind::input, path, {}, "is damaged: its picture is not of the size that it says");
   result_->film.merge(more.film);
   for (size_t i = 0; i < more.light.size(); ++i) result_->light[i].film.merge(more.light[i].film);
+  for (size_t tile = 0; tile < light_.size(); ++tile) light_[tile] += checkpoint.state->light[tile];
+  result_->rays += more.rays;
   result_->samples += more.samples;
   result_->seconds += more.seconds;
   result_->bad_samples += more.bad_samples;
@@ -60,6 +63,7 @@ void Merged::add(const std::string& path) {
 
 RenderResult& Merged::result() {
   result_->error = estimate_error(result_->film);
+  result_->missing = estimate_missing(light_);
   return *result_;
 }
 

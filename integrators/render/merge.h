@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "integrators/render/layers.h"
 #include "integrators/render/render.h"
@@ -14,14 +15,15 @@
 
 namespace vernier {
 
-/// Renders of one picture by different seeds, put together from their checkpoints.
+/// Renders of one picture by different seeds, put together from their checkpoints one after the other: memory
+/// does not depend on how many there are.
 class Merged {
  public:
   /// Throws Error(input) when the file is no checkpoint, is of another picture than those before, or has the
   /// seed of one of them.
   void add(const std::string& path);
 
-  /// Of all samples, its error estimated. One file or more was added.
+  /// Of all samples, with their error and what they are known to leave out. One file or more was added.
   RenderResult& result();
   /// With those layers, and texts that say what was sampled, by which seeds, and how wrong it is; after
   /// result().
@@ -32,6 +34,7 @@ class Merged {
 
   std::optional<RenderResult> result_;
   RenderIdentity identity_;  ///< without seed, build and platform
+  std::vector<TileLight> light_;
   std::map<uint64_t, std::string> files_by_seed_;
 };
 

@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "integrators/render/backdrop.h"
 #include "integrators/render/camera_sample.h"
+#include "integrators/render/error_goal.h"
 #include "integrators/render/observer_thread.h"
 #include "integrators/render/render_state.h"
 #include "scene/scene.h"
@@ -17,13 +18,6 @@ namespace {
 
 constexpr int tile_size = RenderState::tile_size;
 constexpr size_t kept_bad_samples = 8;
-
-/// How many times the error asked for there is: by the figure itself, and by the end of its interval, which
-/// may be a tenth larger. At 1 the picture is good enough, and with 97.5 % confidence not much worse than
-/// asked.
-double excess(const ErrorEstimate& error, double asked) {
-  return std::max(error.rel_rmse, error.high / 1.1) / asked;
-}
 
 /// Of the pass after `done` samples a pixel. Passes double at first, so that a picture comes soon and
 /// stratified sets of samples are completed; later ones are short enough to look often at clock and target,
@@ -143,7 +137,7 @@ class Renderer {
       result().convergence.push_back({seconds(), samples_per_pixel(), estimate_error(result().film)});
     }
     if (!reason_ && has_target && !result().convergence.empty() &&
-        excess(result().convergence.back().error, options_.limits.error) <= 1)
+        error_excess(result().convergence.back().error, options_.limits.error) <= 1)
       reason_ = StopReason::error;
   }
 
@@ -295,7 +289,7 @@ class Renderer {
     if (options_.limits.error > 0 && !result().convergence.empty()) {
       // Squared error falls as one over the samples, and is looked at where a pass ends.
       const auto& last = result().convergence.back();
-      const double needed = last.samples_per_pixel * square(excess(last.error, options_.limits.error));
+      const double needed = last.samples_per_pixel * square(error_excess(last.error, options_.limits.error));
       double end = state_.done + state_.pass.size();
       while (end < needed && end < 1e9) end += pass_size(uint32_t(end));
       p.fraction = std::max(p.fraction, p.samples_per_pixel / end);

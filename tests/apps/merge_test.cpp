@@ -88,6 +88,63 @@ TEST_F(MergeCommand, PartsHaveOneExpectationWithTheWhole) {
   EXPECT_EQ(compared.exit_code, 0) << compared.out;
 }
 
+TEST_F(MergeCommand, WhatIsMissingIsNamed) {
+  render("a", {"--size", "16x16", "--spp", "2", "--seed", "1"});
+  render("b", {"--size", "16x16", "--spp", "2", "--seed", "2"});
+  const ProcessResult refused = merge({"a", "x", "b", "y"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("2 of 4 checkpoints are not there: " + folder_.file("x.ckpt") + ", " +
+                                     folder_.file("y.ckpt") + "; render them"));
+  EXPECT_THAT(folder_.names(), testing::Not(testing::Contains(HasSubstr("merged"))));
+  const ProcessResult told = merge({"a", "x", "b", "y"}, {"--skip-missing"});
+  EXPECT_EQ(told.exit_code, 0);
+  EXPECT_THAT(told.err, testing::StartsWith("warning: 2 of 4 checkpoints are not there"));
+  const std::vector<float> without = layers("merged").image.values;
+  EXPECT_EQ(merge({"a", "b"}).exit_code, 0);
+  EXPECT_EQ(layers("merged").image.values, without);
+  EXPECT_EQ(merge({"x", "y"}, {"--skip-missing"}).exit_code, 3);
+  // One of two is a picture, too.
+  EXPECT_EQ(merge({"a", "x"}, {"--skip-missing"}).exit_code, 0);
+}
+
+TEST_F(MergeCommand, SaysWhatAnErrorNeeds) {
+  render("a", {"--size", "32x32", "--spp", "16", "--seed", "1"});
+  render("b", {"--size", "32x32", "--spp", "16", "--seed", "2"});
+  const std::string goal = folder_.file("goal");
+  const auto goal_for = [&](const std::string& error) {
+    const ProcessResult result = merge({"a", "b"}, {"--error", error, "--goal", goal});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.out.find("needs about " + read_file(goal).substr(0, 2)) != std::string::npos,
+              read_file(goal) != "0\n");
+    return std::stoi(read_file(goal));
+  };
+  EXPECT_EQ(goal_for("99%"), 0);
+  // Half the error takes four times the samples.
+  EXPECT_GT(goal_for("4%"), 32);
+  EXPECT_NEAR(double(goal_for("2%")) / goal_for("4%"), 4, 0.1);
+  EXPECT_EQ(merge({"a", "b"}, {"--goal", goal}).exit_code, 2);
+}
+
+TEST_F(MergeCommand, SeveralOutputs) {
+  render("a", {"--size", "16x16", "--spp", "2", "--seed", "1"});
+  render("b", {"--size", "16x16", "--spp", "2", "--seed", "2"});
+  const ProcessResult result = merge({"a", "b"}, {"-o", folder_.file("merged.png"), "--aov", "error"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(folder_.names(), testing::IsSupersetOf({"merged.exr", "merged.png"}));
+}
+
+// What the parts leave out the whole leaves out, too.
+TEST_F(MergeCommand, MissingLightIsToldOf) {
+  for (const char* seed : {"1", "2"})
+    render(seed, {"--size", "16x16", "--spp", "64", "--max-depth", "2", "--seed", seed});
+  const ProcessResult result = merge({"1", "2"});
+  EXPECT_THAT(result.out, HasSubstr("of all light missing beyond the depth limit"));
+  const auto missing = [&](const std::string& name) {
+    return std::stod(layers(name).metadata.at("vernier:missingBeyondDepth"));
+  };
+  EXPECT_NEAR(missing("merged"), (missing("1") + missing("2")) / 2, 0.02);
+}
+
 TEST_F(MergeCommand, Refuses) {
   render("a", {"--size", "16x16", "--spp", "2", "--seed", "1"});
   render("same", {"--size", "16x16", "--spp", "4", "--seed", "1"});

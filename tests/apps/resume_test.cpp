@@ -6,6 +6,7 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
+#include "core/base/file_lock.h"
 #include "core/image/image_io.h"
 #include "integrators/render/checkpoint.h"
 #include "tests/support/process.h"
@@ -119,6 +120,37 @@ TEST_F(ResumeCommand, OneCommandStartsAndGoesOn) {
   EXPECT_THAT(second.err, HasSubstr("going on from " + ckpt_ + ": 20"));
   EXPECT_EQ(values("a.exr"), values("b.exr")) << "all was there";
   EXPECT_EQ(stats("a.json")["picture"]["samples"], stats("a.json")["resumed"]["samples"]);
+}
+
+TEST_F(ResumeCommand, ACheckpointNeedsNoPicture) {
+  const ProcessResult result = run_vernier(
+      {"render", cornell_box, "--size", "64x64", "--spp", "2", "--checkpoint", ckpt_, "--progress", "none"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, testing::StartsWith("wrote " + ckpt_ + ": 64x64, 2 spp"));
+  ASSERT_EQ(render("a.exr", {"--spp", "2", "--resume", ckpt_, "-q"}).exit_code, 0);
+  ASSERT_EQ(render("b.exr", {"--spp", "2", "-q"}).exit_code, 0);
+  EXPECT_EQ(values("a.exr"), values("b.exr"));
+}
+
+TEST_F(ResumeCommand, ACheckpointIsDroppedWhenThePictureIsThere) {
+  const std::vector<std::string> dropped{"--checkpoint", ckpt_, "--drop-checkpoint"};
+  std::vector<std::string> cut{"--spp", "100000", "--progress", "json"};
+  cut.insert(cut.end(), dropped.begin(), dropped.end());
+  ASSERT_EQ(render("a.exr", cut, {SIGTERM, "\"samples\":"}).exit_code, 5);
+  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"a.ckpt", "a.exr"}));
+  std::vector<std::string> rest{"--spp", "2", "-q", "--resume", ckpt_};
+  rest.insert(rest.end(), dropped.begin(), dropped.end());
+  ASSERT_EQ(render("a.exr", rest).exit_code, 0);
+  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"a.exr"}));
+  EXPECT_EQ(render("a.exr", {"--drop-checkpoint"}).exit_code, 2);
+}
+
+TEST_F(ResumeCommand, TwoWritersAreRefused) {
+  const FileLock first(ckpt_);
+  const ProcessResult second = render("a.exr", {"--spp", "2", "--checkpoint", ckpt_, "-q"});
+  EXPECT_EQ(second.exit_code, 3);
+  EXPECT_THAT(second.err, testing::StartsWith("error: " + ckpt_ + ": is being written by process "));
+  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"a.ckpt.lock"}));
 }
 
 TEST_F(ResumeCommand, AnotherRenderIsRefused) {
