@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Writes what a scene shows at a frame as a .gltf for Vernier. Runs in the child process alone."""
+from __future__ import annotations
+
+import os
+
+import bpy
+
+from .collect import Collected, collect
+from .frame import Border, Frame, frame_of, lens_flags
+from .gltf_file import GltfFile
+from .lamps import add_lamps
+from .materials import notes_on_materials
+from .world import WorldPainter
+
+
+class SceneExporter:
+    """Answers requests for frames of one scene."""
+
+    def __init__(self, scene: bpy.types.Scene):
+        self._scene = scene
+        self._world = WorldPainter(scene)
+        self._border = _border(scene.render)
+        self._stage = bpy.data.scenes.new("Vernier's stage")
+
+    def export(self, request: dict) -> dict:
+        """Writes the files of a frame; returns the scene's name and the flags that the picture needs."""
+        frame, folder = request["frame"], request["folder"]
+        self._scene.frame_set(frame, subframe=request["subframe"])
+        collected = collect(self._scene, request["layer"])
+        if not collected.camera:
+            raise ValueError(f"scene '{self._scene.name}' has no camera; add one, or make one active")
+        notes = collected.notes | notes_on_materials(collected.materials())
+        width, height = request["size"]
+        view = frame_of(width, height, collected.camera.projection, self._border)
+        path = os.path.join(folder, f"{request['name']}.gltf")
+        self._write_meshes(collected, path)
+        _complete(path, collected, view)
+        world = self._world.picture(folder, frame)
+        return {"scene": path, "flags": _flags(collected, view, world),
+                "part": [view.part_width, view.part_height],
+                "notes": sorted(notes)}
+
+    def _write_meshes(self, collected: Collected, path: str) -> None:
+        """Puts the meshes on a stage of their own, each where it stands, and has the exporter write that."""
+        objects = [_placed(*mesh) for mesh in collected.meshes]
+        for thing in objects:
+            self._stage.collection.objects.link(thing)
+        try:
+            bpy.context.window.scene = self._stage
+            bpy.ops.export_scene.gltf(filepath=path, **_EXPORT)
+        finally:
+            bpy.context.window.scene = self._scene
+            bpy.data.batch_remove({*objects, *(thing.data for thing in objects)})
+
+
+# Poses, modifiers and visibility are those of the meshes already; lamps and the camera are the add-on's own.
+_EXPORT = {
+    "export_format": "GLTF_SEPARATE", "use_active_scene": True, "export_yup": True, "export_apply": False,
+    "export_animations": False, "export_skins": False, "export_morph": False, "export_cameras": False,
+    "export_lights": False, "export_extras": False, "export_draco_mesh_compression_enable": False}
+
+
+def _placed(name: str, mesh: bpy.types.Mesh, matrix) -> bpy.types.Object:
+    """An object; its mesh is sheared itself where no place, turn and scale do what the matrix does."""
+    location, rotation, scale = matrix.decompose()
+    rest = type(matrix).LocRotScale(location, rotation, scale)
+    size = max(max(abs(value) for value in row) for row in matrix)
+    if max(abs(a - b) for p, q in zip(matrix, rest) for a, b in zip(p, q)) > 1e-5 * size:
+        mesh = mesh.copy()
+        mesh.transform(matrix)
+        return bpy.data.objects.new(name, mesh)
+    thing = bpy.data.objects.new(name, mesh)
+    thing.matrix_world = matrix
+    return thing
+
+
+def _complete(path: str, collected: Collected, view: Frame) -> None:
+    """Adds what the exporter does not know or does not keep."""
+    camera = collected.camera
+    gltf = GltfFile(path)
+    add_lamps(collected.lamps, gltf)
+    entry = {"name": camera.name, **view.camera(camera.projection.is_orthographic)}
+    gltf.add_node(camera.name, camera.matrix, {"camera": gltf.add("cameras", entry)})
+    gltf.save()
+
+
+def _flags(collected: Collected, view: Frame, world: str | None) -> list[str]:
+    camera = collected.camera
+    flags = view.flags() + ["--env", world or "none"]
+    if camera.f_number:
+        flags += lens_flags(view, camera.lens, camera.f_number, camera.focus)
+    return flags
+
+
+def _border(render) -> Border | None:
+    if not render.use_border:
+        return None
+    return Border(render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y)
