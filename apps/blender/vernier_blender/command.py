@@ -47,7 +47,10 @@ def render_flags(settings, render, layers: list[str]) -> list[str]:
         flags.append("--transparent")
     if layers:
         flags += ["--aov", ",".join(dict.fromkeys(layers))]
-    return flags + shlex.split(settings.further_flags)
+    try:
+        return flags + shlex.split(settings.further_flags)
+    except ValueError as problem:
+        raise RenderError(f"Further Flags: {settings.further_flags}: {problem}") from problem
 
 
 def run(program: str, scene: str, output: str, flags: list[str], watcher: "Watcher") -> Outcome:

@@ -32,7 +32,8 @@ class VernierRenderEngine(bpy.types.RenderEngine):
         except Stopped:
             pass  # Blender has been told by the one who stopped it
         except (RenderError, ExportError, ExrError, OSError) as problem:
-            self.error_set(str(problem))
+            self.error_set(str(problem))  # beside the picture
+            self.report({"ERROR"}, str(problem))  # to who called the operator
 
     def update_render_passes(self, scene=None, renderlayer=None):
         self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
@@ -104,8 +105,8 @@ class _Picture:
         self._fill(result)
         state = {"samples_per_pixel": outcome.samples_per_pixel, **(outcome.error or {})}
         text = command.describe_state(state)
-        result.stamp_data_add_field("Vernier", text)
         self._engine.end_result(result)
+        self._engine.get_result().stamp_data_add_field(f"Vernier.{self._layer.name}", text)
         self._engine.update_stats("", text)
         print(f"Vernier: {text}", flush=True)
         self._tell(outcome.notes)

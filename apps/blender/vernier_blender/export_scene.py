@@ -10,7 +10,7 @@ from .collect import Collected, collect
 from .frame import Border, Frame, frame_of, lens_flags
 from .gltf_file import GltfFile
 from .lamps import add_lamps
-from .materials import notes_on_materials
+from .materials import make_readable
 from .world import WorldPainter
 
 
@@ -30,7 +30,7 @@ class SceneExporter:
         collected = collect(self._scene, request["layer"])
         if not collected.camera:
             raise ValueError(f"scene '{self._scene.name}' has no camera; add one, or make one active")
-        notes = collected.notes | notes_on_materials(collected.materials())
+        notes = collected.notes | make_readable(collected.materials())
         width, height = request["size"]
         view = frame_of(width, height, collected.camera.projection, self._border)
         path = os.path.join(folder, f"{request['name']}.gltf")
@@ -79,6 +79,7 @@ def _complete(path: str, collected: Collected, view: Frame) -> None:
     """Adds what the exporter does not know or does not keep."""
     camera = collected.camera
     gltf = GltfFile(path)
+    gltf.remove_black_mirrors()
     add_lamps(collected.lamps, gltf)
     entry = {"name": camera.name, **view.camera(camera.projection.is_orthographic)}
     gltf.add_node(camera.name, camera.matrix, {"camera": gltf.add("cameras", entry)})

@@ -81,6 +81,14 @@ class GltfFile:
                      "material": material}
         return self.add("meshes", {"name": name, "primitives": [primitive]})
 
+    def remove_black_mirrors(self) -> None:
+        """Blender's specular of 0 mirrors nothing; the exporter makes a black colour of it, which still mirrors
+        what is seen at grazing angles."""
+        for material in self.document.get("materials", []):
+            specular = material.get("extensions", {}).get("KHR_materials_specular", {})
+            if specular.get("specularColorFactor") == [0, 0, 0]:
+                specular["specularFactor"] = 0
+
     def _use(self, extension: str) -> dict:
         self._declare(extension)
         return self.document.setdefault("extensions", {}).setdefault(extension, {})
