@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Lamps, worlds and cameras are as bright as Cycles has them, within both renderers' errors, on diffuse surfaces."""
 import math
+import sys
 import unittest
 
 import bpy
@@ -8,7 +9,7 @@ import numpy
 import pictures
 
 SQUARE = 8  # pixels a side over which differences are averaged
-SIZE = (48, 48)
+SIZE = (32, 32)
 
 
 def room(size=SIZE):
@@ -16,10 +17,10 @@ def room(size=SIZE):
     scene = pictures.new_scene(size)
     pictures.add_square(20)
     pictures.add_cube(0.8, (0.5, 0.3, 0.4), (0, 0, 0.4))
-    scene.vernier.samples = 256
+    scene.vernier.samples = 128
     scene.vernier.pixel_filter = "box"
     cycles = scene.cycles
-    cycles.samples, cycles.use_denoising, cycles.use_adaptive_sampling = 256, False, False
+    cycles.samples, cycles.use_denoising, cycles.use_adaptive_sampling = 128, False, False
     cycles.pixel_filter_type, cycles.filter_width, cycles.device = "BOX", 1, "CPU"
     cycles.sample_clamp_indirect = cycles.light_sampling_threshold = 0
     cycles.max_bounces = cycles.diffuse_bounces = 16
@@ -79,7 +80,7 @@ class BesideCycles(unittest.TestCase):
         rms = math.sqrt((difference ** 2).mean())
         expected = math.hypot(our_error, their_error)
         print(f"{self.id()}: rms difference {rms:.4f}, errors {our_error:.4f} and {their_error:.4f}, mean "
-              f"{difference.mean():+.4f}")
+              f"{difference.mean():+.4f}", file=sys.stderr)
         self.assertLess(rms, 2 * expected + systematic)
         self.assertLess(abs(difference.mean()), 3 * expected / math.sqrt(difference.size / 3) + systematic)
 
@@ -90,8 +91,10 @@ class BesideCycles(unittest.TestCase):
 
     def test_round_lamp(self):
         scene = room()
-        pictures.add_lamp("POINT", (-1, 0.5, 3), energy=300, shadow_soft_size=0.4)
-        self.expect_alike(scene, 0.01)
+        # Beside what the camera sees, for Vernier shows lamps that have a size.
+        pictures.add_lamp("POINT", (-3, 0.5, 3), energy=300, shadow_soft_size=0.4)
+        # Before 4.2 Cycles' is a disk that faces what it lights, and so darker by the squared radius over distance.
+        self.expect_alike(scene, 0.012)
 
     def test_sun(self):
         scene = room()
@@ -136,7 +139,7 @@ class BesideCycles(unittest.TestCase):
         self.expect_alike(scene, 0.01)
 
     def test_cameras(self):
-        for change in ({"type": "ORTHO", "ortho_scale": 3.0}, {"sensor_fit": "VERTICAL", "shift_y": 0.1},
+        for change in ({"type": "ORTHO", "ortho_scale": 3.0}, {"sensor_fit": "VERTICAL", "shift_y": 0.125},
                        {"shift_x": -0.125, "lens": 90.0}):
             with self.subTest(change):
                 scene = room((48, 32))

@@ -107,8 +107,8 @@ class _Picture:
         text = command.describe_state(state)
         self._engine.end_result(result)
         self._engine.get_result().stamp_data_add_field(f"Vernier.{self._layer.name}", text)
-        self._engine.update_stats("", text)
-        print(f"Vernier: {text}", flush=True)
+        # Blender forgets the state at the end; this stays in its status bar and log, or goes to the terminal.
+        self._engine.report({"INFO"}, f"Vernier: {text}")
         self._tell(outcome.notes)
 
     def _begin(self):

@@ -14,8 +14,8 @@ _BORROWED = {"DATA_PT_EEVEE_light", "EEVEE_MATERIAL_PT_context_material", "EEVEE
 _FOR_ALL = "BLENDER_RENDER"
 # Of these, what Eevee's say too, and what Vernier has not.
 _UNUSED = {"DATA_PT_light", "DATA_PT_area", "DATA_PT_falloff_curve", "DATA_PT_preview", "MATERIAL_PT_preview",
-           "WORLD_PT_preview", "TEXTURE_PT_preview", "RENDER_PT_gpencil", "VIEWLAYER_PT_filter",
-           "VIEWLAYER_PT_layer_passes"}
+           "WORLD_PT_preview", "TEXTURE_PT_preview", "RENDER_PT_gpencil", "RENDER_PT_freestyle",
+           "VIEWLAYER_PT_freestyle", "VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes"}
 
 
 class _Panel:

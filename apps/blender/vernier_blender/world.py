@@ -6,9 +6,10 @@ import math
 
 import bpy
 
-_LARGEST = 8192  # pixels across
+# Pixels across.
 _PROCEDURAL = 2048
 _UNIFORM = 16
+_PICTURE = (1024, 8192)  # small ones are interpolated as Cycles does it
 
 
 class WorldPainter:
@@ -72,18 +73,19 @@ def _set_quality(scene, world) -> None:
     render.use_file_extension = False
     cycles.device = "CPU"
     cycles.use_denoising = cycles.use_adaptive_sampling = False
-    # Texels are read at the pixels' centres, all else is averaged over the pixels.
+    # Pictures are read at the pixels' centres, which are their own texels'; all else is averaged over the pixels.
     cycles.samples = 1 if is_exact else 16
     cycles.pixel_filter_type = "BOX"
     cycles.filter_width = 0.01 if is_exact else 1
 
 
 def _width(world) -> tuple[int, bool]:
-    """Pixels across, and whether they are an environment picture's own."""
+    """Pixels across, and whether it is a picture, which is read at points."""
     nodes = list(_all_nodes(world.node_tree)) if _has_nodes(world) else []
     widths = [node.image.size[0] for node in nodes if node.type == "TEX_ENVIRONMENT" and node.image]
     if widths and not any(node.type == "TEX_SKY" for node in nodes):
-        return min(max(widths + [_UNIFORM]) // 2 * 2, _LARGEST), True
+        least, most = _PICTURE
+        return min(max(widths + [least]) // 2 * 2, most), True
     is_uniform = all(node.type in ("BACKGROUND", "OUTPUT_WORLD") for node in nodes)
     return (_UNIFORM if is_uniform else _PROCEDURAL), False
 
