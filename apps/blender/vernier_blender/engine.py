@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import time
+import traceback
 
 import bpy
 
@@ -32,8 +33,14 @@ class VernierRenderEngine(bpy.types.RenderEngine):
         except Stopped:
             pass  # Blender has been told by the one who stopped it
         except (RenderError, ExportError, ExrError, OSError) as problem:
-            self.error_set(str(problem))  # beside the picture
-            self.report({"ERROR"}, str(problem))  # to who called the operator
+            self._fail(str(problem))
+        except Exception as problem:  # Blender would crash
+            traceback.print_exc()
+            self._fail(f"fault of the add-on: {problem!r}; where it lies is on the terminal")
+
+    def _fail(self, text: str) -> None:
+        self.error_set(text)  # beside the picture
+        self.report({"ERROR"}, text)  # to who called the operator
 
     def update_render_passes(self, scene=None, renderlayer=None):
         self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
@@ -128,7 +135,11 @@ class _Picture:
 
 
 def _put(render_pass, planes) -> None:
-    render_pass.rect.foreach_set(as_pixels(planes).reshape(-1, render_pass.channels))
+    pixels = as_pixels(planes)
+    try:
+        render_pass.rect.foreach_set(pixels.ravel())
+    except TypeError:  # older Blenders count pixels, not numbers
+        render_pass.rect.foreach_set(pixels.reshape(-1, render_pass.channels))
 
 
 def _file_name(text: str) -> str:
