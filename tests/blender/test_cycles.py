@@ -93,7 +93,7 @@ class BesideCycles(unittest.TestCase):
         scene = room()
         # Beside what the camera sees, for Vernier shows lamps that have a size.
         pictures.add_lamp("POINT", (-3, 0.5, 3), energy=300, shadow_soft_size=0.4)
-        # Before 4.2 Cycles' is a disk that faces what it lights, and so darker by the squared radius over distance.
+        # Cycles' is a disk that faces what it lights, and so darker by the squared radius over distance.
         self.expect_alike(scene, 0.012)
 
     def test_sun(self):

@@ -21,7 +21,7 @@ def exported(*lamps: Lamp) -> dict:
         path = pathlib.Path(folder) / "scene.gltf"
         path.write_text('{"asset": {"version": "2.0"}}')
         gltf = GltfFile(str(path))
-        add_lamps(list(lamps), gltf)
+        add_lamps(list(lamps), gltf, 1 / 4)
         gltf.save()
         return json.loads(path.read_text())
 
@@ -88,7 +88,7 @@ class Lamps(unittest.TestCase):
         self.assertAlmostEqual(spot["outerConeAngle"], 0.5)
         self.assertTrue(0 < spot["innerConeAngle"] < 0.5)
 
-    def test_flat_lamps_have_a_quarter_of_their_watts_per_area(self):
+    def test_flat_lamps_have_their_radiance(self):
         for shape, size, area in (("SQUARE", (2, 9), 4), ("RECTANGLE", (2, 3), 6), ("DISK", (2, 9), math.pi),
                                   ("ELLIPSE", (2, 4), 2 * math.pi)):
             document = exported(Lamp("a", "AREA", WHITE, 100, PLACE, shape=shape, size=size))

@@ -7,6 +7,7 @@ import os
 import bpy
 
 from .collect import Collected, collect
+from .flat_lamps import radiance_of_watt
 from .frame import Border, Frame, frame_of, lens_flags
 from .gltf_file import GltfFile
 from .lamps import add_lamps
@@ -35,7 +36,8 @@ class SceneExporter:
         view = frame_of(width, height, collected.camera.projection, self._border)
         path = os.path.join(folder, f"{request['name']}.gltf")
         self._write_meshes(collected, path)
-        _complete(path, collected, view)
+        has_flat_lamps = any(lamp.kind == "AREA" for lamp in collected.lamps)
+        _complete(path, collected, view, radiance_of_watt(folder) if has_flat_lamps else 0)
         world = self._world.picture(folder, frame)
         return {"scene": path, "flags": _flags(collected, view, world),
                 "part": [view.part_width, view.part_height],
@@ -75,12 +77,12 @@ def _placed(name: str, mesh: bpy.types.Mesh, matrix) -> bpy.types.Object:
     return thing
 
 
-def _complete(path: str, collected: Collected, view: Frame) -> None:
+def _complete(path: str, collected: Collected, view: Frame, watt: float) -> None:
     """Adds what the exporter does not know or does not keep."""
     camera = collected.camera
     gltf = GltfFile(path)
     gltf.remove_black_mirrors()
-    add_lamps(collected.lamps, gltf)
+    add_lamps(collected.lamps, gltf, watt)
     entry = {"name": camera.name, **view.camera(camera.projection.is_orthographic)}
     gltf.add_node(camera.name, camera.matrix, {"camera": gltf.add("cameras", entry)})
     gltf.save()

@@ -2,8 +2,7 @@
 """Blender's lamps as glTF lights, of the brightness that Cycles gives them. Knows nothing of Blender.
 
 glTF's exporter leaves out area lamps and takes all others for points, so the add-on writes lamps itself. Watts
-of a lamp are its radiant flux if it shone to all sides; Cycles gives a flat lamp 1/4 of its watts per area as
-radiance, not the 1/pi that would be the flux.
+are what a point or spot would shine to all sides together; for flat lamps see flat_lamps.py.
 """
 from __future__ import annotations
 
@@ -34,7 +33,8 @@ class Lamp:
     size: tuple[float, float] = (0.0, 0.0)
 
 
-def add_lamps(lamps: list[Lamp], gltf: GltfFile) -> None:
+def add_lamps(lamps: list[Lamp], gltf: GltfFile, radiance_of_watt: float) -> None:
+    """`radiance_of_watt`: of a flat lamp of one watt and one square metre."""
     shapes: dict[str, dict[str, int]] = {}
 
     def shape_of(kind: str) -> dict[str, int]:
@@ -46,7 +46,8 @@ def add_lamps(lamps: list[Lamp], gltf: GltfFile) -> None:
         if max(lamp.color) * lamp.energy <= 0:
             continue
         if lamp.kind == "AREA":
-            _add_area(lamp, gltf, shape_of("disk" if lamp.shape in ("DISK", "ELLIPSE") else "square"))
+            shape = shape_of("disk" if lamp.shape in ("DISK", "ELLIPSE") else "square")
+            _add_area(lamp, gltf, shape, radiance_of_watt)
         elif lamp.kind == "POINT" and lamp.radius > 0:
             _add_sphere(lamp, gltf, shape_of("sphere"))
         else:
@@ -71,14 +72,14 @@ def _cone(lamp: Lamp) -> dict[str, float]:
     return {"innerConeAngle": math.acos(inner), "outerConeAngle": math.acos(outer)}
 
 
-def _add_area(lamp: Lamp, gltf: GltfFile, shape: dict[str, int]) -> None:
+def _add_area(lamp: Lamp, gltf: GltfFile, shape: dict[str, int], radiance_of_watt: float) -> None:
     width, height = lamp.size
     if lamp.shape in ("SQUARE", "DISK"):
         height = width
     matrix = _scaled(lamp.matrix, (width, height, 1))
     area = _unit_area(lamp.shape) * _length(_cross(_column(matrix, 0), _column(matrix, 1)))
     if area > 0:
-        _add_emitter(lamp, gltf, shape, matrix, lamp.energy / (4 * area))
+        _add_emitter(lamp, gltf, shape, matrix, radiance_of_watt * lamp.energy / area)
 
 
 def _add_sphere(lamp: Lamp, gltf: GltfFile, shape: dict[str, int]) -> None:
