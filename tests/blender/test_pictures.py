@@ -167,6 +167,21 @@ class Passes(unittest.TestCase):
         self.assertEqual(channels[f"{name}.Depth.Z"][0, 0], numpy.float32(1e10))
 
 
+    def test_object_index(self):
+        scene = pictures.new_scene()
+        pictures.add_lamp("POINT", (3, -2, 8), energy=2000, shadow_soft_size=0.5)
+        for x, index in ((-1, 3), (1, 7)):
+            cube = pictures.add_cube(1, (x, 0, 0))
+            cube.pass_index = index
+            # Two primitives in the file, and two numbers.
+            cube.data.materials.append(pictures.paint())
+            cube.data.polygons[0].material_index = 1
+        layer = scene.view_layers[0]
+        layer.use_pass_object_index = True
+        index = pictures.rendered(scene, multilayer=True)[f"{layer.name}.IndexOB.X"][16]
+        self.assertEqual((index[0], index[12], index[36]), (0, 3, 7))
+
+
 class Animations(unittest.TestCase):
     def test_frames_are_those_of_single_renders_from_one_child(self):
         scene = cube_scene()

@@ -29,16 +29,24 @@ class CameraView:
 
 
 @dataclass
+class PlacedMesh:
+    name: str
+    mesh: bpy.types.Mesh
+    matrix: object  # mathutils.Matrix
+    pass_index: int
+
+
+@dataclass
 class Collected:
     """Everything that a render of the scene shows, as Blender data that outlive the render."""
 
-    meshes: list[tuple[str, bpy.types.Mesh, object]] = field(default_factory=list)  # name, data, matrix
+    meshes: list[PlacedMesh] = field(default_factory=list)
     lamps: list[Lamp] = field(default_factory=list)
     camera: CameraView | None = None
     notes: set[str] = field(default_factory=set)
 
     def materials(self) -> set[bpy.types.Material]:
-        return {material for _, mesh, _ in self.meshes for material in mesh.materials if material}
+        return {material for placed in self.meshes for material in placed.mesh.materials if material}
 
 
 class NoteTaker(bpy.types.RenderEngine):
@@ -82,7 +90,8 @@ def _collect(depsgraph, collected: Collected) -> None:
         elif thing.type in _SURFACES and instance.show_self:
             mesh = _mesh(thing, depsgraph, known)
             if mesh.polygons:
-                collected.meshes.append((thing.name, mesh, instance.matrix_world.copy()))
+                collected.meshes.append(
+                    PlacedMesh(thing.name, mesh, instance.matrix_world.copy(), thing.pass_index))
         _note_strands(thing, collected.notes)
     collected.camera = _camera(depsgraph, collected.notes)
 

@@ -13,7 +13,7 @@ from .command import Outcome, RenderError, Watcher
 from .exr import ExrError, read_channels
 from .export_session import ExportError, session_for
 from .line_process import Stopped
-from .passes import Pass, as_pixels, combined, wanted_passes
+from .passes import Pass, add_pass_indices, as_pixels, combined, wanted_passes
 from .settings import find_program
 
 
@@ -59,6 +59,7 @@ class _Picture:
         self._passes: list[Pass] = wanted_passes(self._layer)
         self._output = ""
         self._part = (0, 0)
+        self._pass_indices: list[int] = []
 
     def render(self) -> None:
         program = find_program()
@@ -71,7 +72,7 @@ class _Picture:
         request = self._request()
         exported = session.export(request, self._engine.test_break)
         self._tell(exported["notes"])
-        self._part = tuple(exported["part"])
+        self._part, self._pass_indices = tuple(exported["part"]), exported["pass_indices"]
         self._output = os.path.join(session.folder, request["name"] + ".exr")
         layers = [entry.layer for entry in self._passes]
         flags = exported["flags"] + command.render_flags(settings, self._evaluated.render, layers)
@@ -123,6 +124,7 @@ class _Picture:
 
     def _fill(self, result) -> None:
         planes = read_channels(self._output)
+        add_pass_indices(planes, self._pass_indices)
         passes = result.layers[0].passes
         _put(passes["Combined"], combined(planes))
         for entry in self._passes:

@@ -6,7 +6,7 @@ import os
 
 import bpy
 
-from .collect import Collected, collect
+from .collect import Collected, PlacedMesh, collect
 from .flat_lamps import radiance_of_watt
 from .frame import Border, Frame, frame_of, lens_flags
 from .gltf_file import GltfFile
@@ -35,17 +35,20 @@ class SceneExporter:
         width, height = request["size"]
         view = frame_of(width, height, collected.camera.projection, self._border)
         path = os.path.join(folder, f"{request['name']}.gltf")
-        self._write_meshes(collected, path)
+        indices = self._write_meshes(collected, path)
         has_flat_lamps = any(lamp.kind == "AREA" for lamp in collected.lamps)
-        _complete(path, collected, view, radiance_of_watt(folder) if has_flat_lamps else 0)
+        gltf = _completed(path, collected, view, radiance_of_watt(folder) if has_flat_lamps else 0)
         world = self._world.picture(folder, frame)
         return {"scene": path, "flags": _flags(collected, view, world),
                 "part": [view.part_width, view.part_height],
+                "pass_indices": [indices.get(name, 0) for name in gltf.names_of_objects()],
                 "notes": sorted(notes)}
 
-    def _write_meshes(self, collected: Collected, path: str) -> None:
-        """Puts the meshes on a stage of their own, each where it stands, and has the exporter write that."""
-        objects = [_placed(*mesh) for mesh in collected.meshes]
+    def _write_meshes(self, collected: Collected, path: str) -> dict[str, int]:
+        """Puts the meshes on a stage of their own, each where it stands, and has the exporter write that. Returns
+        their pass indices by their names in the file."""
+        objects = [_stage_object(placed) for placed in collected.meshes]
+        indices = {thing.name: thing.pass_index for thing in objects}
         for thing in objects:
             self._stage.collection.objects.link(thing)
         try:
@@ -54,6 +57,7 @@ class SceneExporter:
         finally:
             bpy.context.window.scene = self._scene
             bpy.data.batch_remove({*objects, *(thing.data for thing in objects)})
+        return indices
 
 
 # Poses, modifiers and visibility are those of the meshes already; lamps and the camera are the add-on's own.
@@ -63,21 +67,22 @@ _EXPORT = {
     "export_lights": False, "export_extras": False, "export_draco_mesh_compression_enable": False}
 
 
-def _placed(name: str, mesh: bpy.types.Mesh, matrix) -> bpy.types.Object:
-    """An object; its mesh is sheared itself where no place, turn and scale do what the matrix does."""
-    location, rotation, scale = matrix.decompose()
-    rest = type(matrix).LocRotScale(location, rotation, scale)
+def _stage_object(placed: PlacedMesh) -> bpy.types.Object:
+    """Its mesh is sheared itself where no place, turn and scale do what the matrix does."""
+    matrix = placed.matrix
+    rest = type(matrix).LocRotScale(*matrix.decompose())
     size = max(max(abs(value) for value in row) for row in matrix)
-    if max(abs(a - b) for p, q in zip(matrix, rest) for a, b in zip(p, q)) > 1e-5 * size:
-        mesh = mesh.copy()
-        mesh.transform(matrix)
-        return bpy.data.objects.new(name, mesh)
-    thing = bpy.data.objects.new(name, mesh)
-    thing.matrix_world = matrix
+    is_sheared = max(abs(a - b) for p, q in zip(matrix, rest) for a, b in zip(p, q)) > 1e-5 * size
+    thing = bpy.data.objects.new(placed.name, placed.mesh.copy() if is_sheared else placed.mesh)
+    thing.pass_index = placed.pass_index
+    if is_sheared:
+        thing.data.transform(matrix)
+    else:
+        thing.matrix_world = matrix
     return thing
 
 
-def _complete(path: str, collected: Collected, view: Frame, watt: float) -> None:
+def _completed(path: str, collected: Collected, view: Frame, watt: float) -> GltfFile:
     """Adds what the exporter does not know or does not keep."""
     camera = collected.camera
     gltf = GltfFile(path)
@@ -86,6 +91,7 @@ def _complete(path: str, collected: Collected, view: Frame, watt: float) -> None
     entry = {"name": camera.name, **view.camera(camera.projection.is_orthographic)}
     gltf.add_node(camera.name, camera.matrix, {"camera": gltf.add("cameras", entry)})
     gltf.save()
+    return gltf
 
 
 def _flags(collected: Collected, view: Frame, world: str | None) -> list[str]:

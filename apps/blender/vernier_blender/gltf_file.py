@@ -28,6 +28,12 @@ class GltfFile:
         with open(self._path, "w", encoding="utf-8") as file:
             json.dump(self.document, file, indent=1)
 
+    def names_of_objects(self) -> list[str]:
+        """Of the nodes that show a mesh, once for each of its primitives, as Vernier numbers these."""
+        nodes = [self.document["nodes"][index] for index in self._scene.get("nodes", [])]
+        return [node.get("name", "") for node in nodes if "mesh" in node
+                for _ in self.document["meshes"][node["mesh"]]["primitives"]]
+
     def add(self, table: str, entry: dict) -> int:
         """Appends to one of the document's arrays; returns the entry's index."""
         entries = self.document.setdefault(table, [])

@@ -87,7 +87,7 @@ class VERNIER_PT_passes(_Panel, bpy.types.Panel):
         layer, layout = context.view_layer, self.layout
         layout.use_property_split = True
         column = layout.column(heading="Include")
-        for name in ("use_pass_z", "use_pass_position", "use_pass_normal"):
+        for name in ("use_pass_z", "use_pass_position", "use_pass_normal", "use_pass_object_index"):
             column.prop(layer, name)
         for name in ("use_pass_error", "use_pass_albedo", "use_pass_samples"):
             column.prop(layer.vernier, name)

@@ -37,6 +37,7 @@ _PASSES = (
     Pass("Depth", "Z", "VALUE", "depth", lambda layer: layer.use_pass_z, _depth),
     Pass("Normal", "XYZ", "VECTOR", "normal", lambda layer: layer.use_pass_normal, _z_up("N")),
     Pass("Position", "XYZ", "VECTOR", "position", lambda layer: layer.use_pass_position, _z_up("P")),
+    Pass("IndexOB", "X", "VALUE", "id", lambda layer: layer.use_pass_object_index, _planes("pass_index")),
     Pass("Denoising Albedo", "RGB", "COLOR", "albedo", lambda layer: layer.vernier.use_pass_albedo,
          _planes("albedo.R", "albedo.G", "albedo.B")),
     Pass("Debug Sample Count", "X", "VALUE", "samples", lambda layer: layer.vernier.use_pass_samples,
@@ -50,6 +51,12 @@ _PASSES = (
 
 def wanted_passes(view_layer) -> list[Pass]:
     return [entry for entry in _PASSES if entry.is_wanted(view_layer)]
+
+
+def add_pass_indices(planes: Planes, pass_indices: list[int]) -> None:
+    """Blender's own numbers of the objects, whose ids count from 1."""
+    if "id" in planes:
+        planes["pass_index"] = numpy.array([0, *pass_indices], dtype=numpy.float32)[planes["id"].astype(int)]
 
 
 def combined(planes: Planes) -> list[numpy.ndarray]:
