@@ -22,6 +22,7 @@ class SceneExporter:
         self._scene = scene
         self._world = WorldPainter(scene)
         self._border = _border(scene.render)
+        self._notes = _notes_on_render(scene.render)
         self._stage = bpy.data.scenes.new("Vernier's stage")
 
     def export(self, request: dict) -> dict:
@@ -31,7 +32,7 @@ class SceneExporter:
         collected = collect(self._scene, request["layer"])
         if not collected.camera:
             raise ValueError(f"scene '{self._scene.name}' has no camera; add one, or make one active")
-        notes = collected.notes | make_readable(collected.materials())
+        notes = self._notes | collected.notes | make_readable(collected.materials())
         width, height = request["size"]
         view = frame_of(width, height, collected.camera.projection, self._border)
         path = os.path.join(folder, f"{request['name']}.gltf")
@@ -106,3 +107,12 @@ def _border(render) -> Border | None:
     if not render.use_border:
         return None
     return Border(render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y)
+
+
+def _notes_on_render(render) -> set[str]:
+    notes = set()
+    if render.use_motion_blur:
+        notes.add("there is no motion blur: the frame is frozen")
+    if render.use_multiview:
+        notes.add("there is no stereo: every view is that of the camera itself")
+    return notes
