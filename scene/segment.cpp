@@ -107,7 +107,7 @@ Interaction interaction_at(const Scene& scene, const Segment& segment, const Sur
 /// Whether light notices a surface within a medium, whatever the medium is.
 bool is_plain(const Scene& scene, const SurfacePoint& point, bool from_camera) {
   return !bounds_volume(scene, point.instance) &&
-         (!from_camera || point.front || scene.material(point).double_sided());
+         (!from_camera || scene.material(point).is_seen(point.front));
 }
 
 /// The first surface that light notices, where `point` is the first of all.
@@ -117,7 +117,7 @@ std::optional<Interaction> intersect_beyond(const Scene& scene, Segment segment,
   for (; point; point = scene.intersect(ray)) {
     if (is_plain(scene, *point, from_camera)) return Interaction{*point, segment.media, segment.media, {}};
     if (!bounds_volume(scene, point->instance)) {
-      // Go on behind the invisible side. Starting beyond the hit's own error keeps the parameter t of the
+      // Go on behind what the camera does not see. Starting beyond the hit's own error keeps the parameter t of the
       // first ray.
       const float error = max_component(point->error) / length(ray.direction);
       go_on_from(ray, std::max(next_float_up(point->t), point->t + 2 * error));

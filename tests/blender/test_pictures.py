@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What Blender shows and saves is what Vernier renders."""
+import json
 import math
 import os
 import pathlib
@@ -108,6 +109,28 @@ class Pictures(unittest.TestCase):
         self.assertEqual(picture[16, 24], 0)
         self.assertGreater(picture[16, 9], 0)
         self.assertGreater(picture[16, 39], 0)
+
+    def test_lamps_are_not_seen(self):
+        scene = pictures.new_scene()
+        pictures.add_lamp("AREA", (0, 0, 4), (math.pi, 0, 0), energy=100, size=1)
+        pictures.add_lamp("POINT", (1, 0, 4), energy=100, shadow_soft_size=0.3)
+        self.assertEqual(pictures.colors(pictures.rendered(scene)).max(), 0)
+
+    def test_glass_is_solid(self):
+        scene = cube_scene()
+        material = bpy.data.objects["Cube"].data.materials[0]
+        nodes, links = material.node_tree.nodes, material.node_tree.links
+        glass = nodes.new("ShaderNodeBsdfGlass")
+        glass.inputs["IOR"].default_value = 1.25
+        links.new(glass.outputs[0], nodes["Material Output"].inputs["Surface"])
+        with tempfile.TemporaryDirectory() as folder:
+            scene.vernier.kept_folder = folder
+            pictures.rendered(scene)
+            document = json.loads(pathlib.Path(pictures.kept_scene(folder)).read_text())
+        extensions = next(entry["extensions"] for entry in document["materials"] if entry["name"] == "Grey")
+        self.assertEqual(extensions["KHR_materials_ior"]["ior"], 1.25)
+        self.assertEqual(extensions["KHR_materials_transmission"]["transmissionFactor"], 1)
+        self.assertGreater(extensions["KHR_materials_volume"]["thicknessFactor"], 0)
 
     def test_sheared_objects_are_where_they_should_be(self):
         scene = pictures.new_scene()

@@ -55,7 +55,7 @@ class _Picture:
         self._engine = engine
         self._scene: bpy.types.Scene = depsgraph.scene.original
         self._layer: bpy.types.ViewLayer = self._scene.view_layers[depsgraph.view_layer_eval.name]
-        self._evaluated = depsgraph.scene
+        self._evaluated = depsgraph.scene_eval
         self._passes: list[Pass] = wanted_passes(self._layer)
         self._output = ""
         self._part = (0, 0)

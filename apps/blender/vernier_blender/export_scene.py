@@ -88,6 +88,7 @@ def _completed(path: str, collected: Collected, view: Frame, watt: float) -> Glt
     camera = collected.camera
     gltf = GltfFile(path)
     gltf.remove_black_mirrors()
+    gltf.make_glass_solid()
     add_lamps(collected.lamps, gltf, watt)
     entry = {"name": camera.name, **view.camera(camera.projection.is_orthographic)}
     gltf.add_node(camera.name, camera.matrix, {"camera": gltf.add("cameras", entry)})

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """How bright this Blender's flat lamps are: their radiance is a quarter of their watts per area in Blender 3.4 and
-1/pi of them in 4.3. Its own Cycles is asked, so that every version gets its own brightness."""
+1/pi of them in 4.2 and later. Its own Cycles is asked, so that every version gets its own brightness."""
 from __future__ import annotations
 
 import functools

@@ -51,7 +51,8 @@ class GltfFile:
         return len(lights) - 1
 
     def add_emitter(self, name: str, radiance: list[float]) -> int:
-        """A material whose front gives light and which is not there for other light: a clear wall."""
+        """A material whose front gives light, and which is not there for other light, being a clear wall, nor for
+        the camera."""
         strength = max(max(radiance), 1e-30)
         extensions = {"KHR_materials_emissive_strength": {"emissiveStrength": strength},
                       "KHR_materials_transmission": {"transmissionFactor": 1},
@@ -62,7 +63,8 @@ class GltfFile:
             "name": name,
             "emissiveFactor": [value / strength for value in radiance],
             "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0},
-            "extensions": extensions})
+            "extensions": extensions,
+            "extras": {"vernier": {"hiddenFromCamera": True}}})
 
     def add_shape(self, points: list[tuple[float, ...]], triangles: list[tuple[int, ...]]) -> dict[str, int]:
         """Stores a shape; returns the primitive of a mesh that still lacks its material."""
@@ -94,6 +96,14 @@ class GltfFile:
             specular = material.get("extensions", {}).get("KHR_materials_specular", {})
             if specular.get("specularColorFactor") == [0, 0, 0]:
                 specular["specularFactor"] = 0
+
+    def make_glass_solid(self) -> None:
+        """In Blender a closed surface that transmits is solid glass; glTF takes it for a bubble unless it says so."""
+        for material in self.document.get("materials", []):
+            extensions = material.get("extensions", {})
+            if "KHR_materials_transmission" in extensions and "KHR_materials_volume" not in extensions:
+                extensions["KHR_materials_volume"] = {"thicknessFactor": 1}
+                self._declare("KHR_materials_volume")
 
     def _use(self, extension: str) -> dict:
         self._declare(extension)
