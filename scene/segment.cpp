@@ -117,7 +117,7 @@ std::optional<Interaction> intersect_beyond(const Scene& scene, Segment segment,
   for (; point; point = scene.intersect(ray)) {
     if (is_plain(scene, *point, from_camera)) return Interaction{*point, segment.media, segment.media, {}};
     if (!bounds_volume(scene, point->instance)) {
-      // Go on behind what the camera does not see. Starting beyond the hit's own error keeps the parameter t of the
+      // Go on behind the invisible side. Starting beyond the hit's own error keeps the parameter t of the
       // first ray.
       const float error = max_component(point->error) / length(ray.direction);
       go_on_from(ray, std::max(next_float_up(point->t), point->t + 2 * error));
