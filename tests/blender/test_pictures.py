@@ -71,8 +71,8 @@ class Pictures(unittest.TestCase):
 
     def test_percentage_of_the_resolution(self):
         scene = cube_scene()
-        scene.render.resolution_percentage = 50
-        self.assertEqual(pictures.rendered(scene)["R"].shape, (16, 24))
+        scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 100, 50, 29
+        self.assertEqual(pictures.rendered(scene)["R"].shape, (14, 29))
 
     def test_error_is_in_the_files_metadata(self):
         scene = cube_scene()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pathlib
 import time
 import traceback
 
@@ -74,6 +75,7 @@ class _Picture:
         self._tell(exported["notes"])
         self._part, self._pass_indices = tuple(exported["part"]), exported["pass_indices"]
         self._output = os.path.join(session.folder, request["name"] + ".exr")
+        pathlib.Path(self._output).unlink(missing_ok=True)  # of an earlier render into a kept folder
         layers = [entry.layer for entry in self._passes]
         flags = exported["flags"] + command.render_flags(settings, self._evaluated.render, layers)
         outcome = command.run(program, exported["scene"], self._output, flags, self._watcher())
@@ -82,10 +84,11 @@ class _Picture:
     def _request(self) -> dict:
         scene = self._evaluated
         render = scene.render
-        scale = render.resolution_percentage / 100
+        size = [pixels * render.resolution_percentage // 100
+                for pixels in (render.resolution_x, render.resolution_y)]
         name = f"{_file_name(self._layer.name)}_{scene.frame_current:04d}"
         return {"frame": scene.frame_current, "subframe": scene.frame_subframe, "layer": self._layer.name,
-                "name": name, "size": [int(render.resolution_x * scale), int(render.resolution_y * scale)]}
+                "name": name, "size": size}
 
     def _watcher(self) -> Watcher:
         told = 0.0
