@@ -74,6 +74,10 @@ class Material {
   bool is_unlit() const { return description_.unlit; }
   bool is_opaque() const { return description_.alpha_mode == AlphaMode::opaque; }
   bool double_sided() const { return description_.double_sided; }
+  /// Whether the camera sees that side; light meets both.
+  bool is_seen(bool front) const {
+    return !description_.hidden_from_camera && (front || description_.double_sided);
+  }
   /// Light may pass through the surface.
   bool transmits() const { return description_.transmits(); }
   /// Encloses a volume: the inside absorbs, and its surface bends light that is not scattered.

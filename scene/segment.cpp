@@ -107,7 +107,7 @@ Interaction interaction_at(const Scene& scene, const Segment& segment, const Sur
 /// Whether light notices a surface within a medium, whatever the medium is.
 bool is_plain(const Scene& scene, const SurfacePoint& point, bool from_camera) {
   return !bounds_volume(scene, point.instance) &&
-         (!from_camera || point.front || scene.material(point).double_sided());
+         (!from_camera || scene.material(point).is_seen(point.front));
 }
 
 /// The first surface that light notices, where `point` is the first of all.

@@ -23,6 +23,7 @@ enum class AlphaMode { opaque, mask, blend };
 /// A glTF 2.0 material as the file states it, with the specification's defaults. Factors are linear.
 struct MaterialDescription {
   std::string name;
+  bool hidden_from_camera = false;  ///< camera rays go on as if the surface were not there; light meets it
 
   Vec4f base_color{1, 1, 1, 1};
   TextureUse base_color_texture;  ///< RGB sRGB-encoded

@@ -50,6 +50,11 @@ class Members {
   const Value* object_ = nullptr;
 };
 
+bool is_true(const tinygltf::Value& object, const char* member) {
+  return object.IsObject() && object.Has(member) && object.Get(member).IsBool() &&
+         object.Get(member).Get<bool>();
+}
+
 class MaterialReader {
  public:
   MaterialReader(const Document& document, size_t index, std::vector<RoughnessFromGlossiness>& derived,
@@ -91,6 +96,8 @@ class MaterialReader {
     if (source_.alphaMode == "MASK") result_.alpha_mode = AlphaMode::mask;
     if (source_.alphaMode == "BLEND") result_.alpha_mode = AlphaMode::blend;
     result_.unlit = source_.extensions.count("KHR_materials_unlit") > 0;
+    if (const auto& extras = source_.extras; extras.IsObject() && extras.Has("vernier"))
+      result_.hidden_from_camera = is_true(extras.Get("vernier"), "hiddenFromCamera");
   }
 
   void read_metallic_roughness() {

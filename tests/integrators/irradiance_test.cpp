@@ -59,6 +59,19 @@ TEST(Irradiance, Rectangle) {
   expect_irradiance(scene, 0.7f, aside);
 }
 
+// It lights as ever; the camera sees what is behind it, which is nothing.
+TEST(Irradiance, OfALampThatIsHiddenFromTheCamera) {
+  const auto with_lamp = [](bool hidden) {
+    MaterialDescription lamp = emitter(1);
+    lamp.hidden_from_camera = hidden;
+    return floor_scene().add(parallelogram({0, 1, 0}, {1, 0, 0}, {0, 0, 1}), lamp).build();
+  };
+  const Ray up = ray_through({0.5f, 0.5f, 0.5f}, {0.5f, 1, 0.5f});
+  EXPECT_EQ(measure(with_lamp(false), *path({}), up, 4).mean(), 1);
+  EXPECT_EQ(measure(with_lamp(true), *path({}), up, 4).mean(), 0);
+  expect_irradiance(with_lamp(true), 0, 0.138532 * pi_d);
+}
+
 // Close to a panel that stands on the floor, and at its foot.
 TEST(Irradiance, NearRectangle) {
   const Scene scene =

@@ -79,6 +79,17 @@ TEST(ImportMaterials, ReadsFactors) {
   EXPECT_FALSE(m.unlit);
 }
 
+TEST(ImportMaterials, ReadsWhatTheCameraDoesNotSee) {
+  const auto hidden = [](const json& extras) {
+    return with_material({{"extras", extras}}).import().materials.at(0).hidden_from_camera;
+  };
+  EXPECT_TRUE(hidden({{"vernier", {{"hiddenFromCamera", true}}}}));
+  EXPECT_FALSE(hidden({{"vernier", {{"hiddenFromCamera", false}}}}));
+  // Extras may be anything.
+  for (const json& other : {json(3), json{{"vernier", 3}}, json{{"vernier", {{"hiddenFromCamera", "yes"}}}}})
+    EXPECT_FALSE(hidden(other));
+}
+
 TEST(ImportMaterials, ReadsExtensions) {
   const json extensions = {
       {"KHR_materials_unlit", json::object()},

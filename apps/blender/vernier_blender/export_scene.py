@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Writes what a scene shows at a frame as a .gltf for Vernier. Runs in the child process alone."""
+from __future__ import annotations
+
+import os
+
+import bpy
+
+from .collect import Collected, PlacedMesh, collect
+from .flat_lamps import radiance_of_watt
+from .frame import Border, Frame, frame_of, lens_flags
+from .gltf_file import GltfFile
+from .lamps import add_lamps
+from .materials import make_readable
+from .world import WorldPainter
+
+
+class SceneExporter:
+    """Answers requests for frames of one scene."""
+
+    def __init__(self, scene: bpy.types.Scene):
+        self._scene = scene
+        self._world = WorldPainter(scene)
+        self._border = _border(scene.render)
+        self._notes = _notes_on_render(scene.render)
+        self._stage = bpy.data.scenes.new("Vernier's stage")
+
+    def export(self, request: dict) -> dict:
+        """Writes the files of a frame; returns the scene's name and the flags that the picture needs."""
+        frame, folder = request["frame"], request["folder"]
+        self._scene.frame_set(frame, subframe=request["subframe"])
+        collected = collect(self._scene, request["layer"])
+        if not collected.camera:
+            raise ValueError(f"scene '{self._scene.name}' has no camera; add one, or make one active")
+        notes = self._notes | collected.notes | make_readable(collected.materials())
+        width, height = request["size"]
+        view = frame_of(width, height, collected.camera.projection, self._border)
+        path = os.path.join(folder, f"{request['name']}.gltf")
+        indices = self._write_meshes(collected, path)
+        has_flat_lamps = any(lamp.kind == "AREA" for lamp in collected.lamps)
+        gltf = _completed(path, collected, view, radiance_of_watt(folder) if has_flat_lamps else 0)
+        world = self._world.picture(folder, frame)
+        return {"scene": path, "flags": _flags(collected, view, world),
+                "part": [view.part_width, view.part_height],
+                "pass_indices": [indices.get(name, 0) for name in gltf.names_of_objects()],
+                "notes": sorted(notes)}
+
+    def _write_meshes(self, collected: Collected, path: str) -> dict[str, int]:
+        """Puts the meshes on a stage of their own, each where it stands, and has the exporter write that. Returns
+        their pass indices by their names in the file."""
+        objects = [_stage_object(placed) for placed in collected.meshes]
+        indices = {thing.name: thing.pass_index for thing in objects}
+        for thing in objects:
+            self._stage.collection.objects.link(thing)
+        try:
+            bpy.context.window.scene = self._stage
+            bpy.ops.export_scene.gltf(filepath=path, **_EXPORT)
+        finally:
+            bpy.context.window.scene = self._scene
+            bpy.data.batch_remove({*objects, *(thing.data for thing in objects)})
+        return indices
+
+
+# Poses, modifiers and visibility are those of the meshes already; lamps and the camera are the add-on's own.
+_EXPORT = {
+    "export_format": "GLTF_SEPARATE", "use_active_scene": True, "export_yup": True, "export_apply": False,
+    "export_animations": False, "export_skins": False, "export_morph": False, "export_cameras": False,
+    "export_lights": False, "export_extras": False, "export_draco_mesh_compression_enable": False}
+
+
+def _stage_object(placed: PlacedMesh) -> bpy.types.Object:
+    """Its mesh is sheared itself where no place, turn and scale do what the matrix does."""
+    matrix = placed.matrix
+    rest = type(matrix).LocRotScale(*matrix.decompose())
+    size = max(max(abs(value) for value in row) for row in matrix)
+    is_sheared = max(abs(a - b) for p, q in zip(matrix, rest) for a, b in zip(p, q)) > 1e-5 * size
+    thing = bpy.data.objects.new(placed.name, placed.mesh.copy() if is_sheared else placed.mesh)
+    thing.pass_index = placed.pass_index
+    if is_sheared:
+        thing.data.transform(matrix)
+    else:
+        thing.matrix_world = matrix
+    return thing
+
+
+def _completed(path: str, collected: Collected, view: Frame, watt: float) -> GltfFile:
+    """Adds what the exporter does not know or does not keep."""
+    camera = collected.camera
+    gltf = GltfFile(path)
+    gltf.remove_black_mirrors()
+    gltf.make_glass_solid()
+    add_lamps(collected.lamps, gltf, watt)
+    entry = {"name": camera.name, **view.camera(camera.projection.is_orthographic)}
+    gltf.add_node(camera.name, camera.matrix, {"camera": gltf.add("cameras", entry)})
+    gltf.save()
+    return gltf
+
+
+def _flags(collected: Collected, view: Frame, world: str | None) -> list[str]:
+    camera = collected.camera
+    flags = view.flags() + ["--env", world or "none"]
+    if camera.f_number:
+        flags += lens_flags(view, camera.lens, camera.f_number, camera.focus)
+    return flags
+
+
+def _border(render) -> Border | None:
+    if not render.use_border:
+        return None
+    return Border(render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y)
+
+
+def _notes_on_render(render) -> set[str]:
+    notes = set()
+    if render.use_motion_blur:
+        notes.add("there is no motion blur: the frame is frozen")
+    if render.use_multiview:
+        notes.add("there is no stereo: every view is that of the camera itself")
+    return notes
