@@ -10,9 +10,10 @@ namespace {
 
 /// Flags that say where pictures go, which of them are made, and what is said meanwhile.
 const std::set<std::string> not_of_the_picture{
-    "--output", "--format",      "--stats",      "--report",  "--checkpoint",   "--checkpoint-every",
-    "--resume", "--progress",    "--quiet",      "--verbose", "--threads",      "--frames",
-    "--fps",    "--write-every", "--keep-going", "--help",    "--skip-existing"};
+    "--output", "--format",      "--stats",      "--report",  "--checkpoint",    "--checkpoint-every",
+    "--resume", "--progress",    "--quiet",      "--verbose", "--threads",       "--frames",
+    "--fps",    "--write-every", "--keep-going", "--help",    "--skip-existing", "--host",
+    "--port"};
 
 }  // namespace
 
@@ -28,8 +29,8 @@ PictureCommand::PictureCommand(const CLI::App& render) {
   }
 }
 
-std::string PictureCommand::text(const std::string& scene,
-                                 const std::map<std::string, std::string>& instead) const {
+std::vector<std::string> PictureCommand::words(const std::string& scene,
+                                               const std::map<std::string, std::string>& instead) const {
   std::vector<std::string> words{"vernier", "render", scene};
   for (const Flag& flag : flags_) {
     const auto other = instead.find(flag.name);
@@ -42,6 +43,18 @@ std::string PictureCommand::text(const std::string& scene,
     else
       words.insert(words.end(), flag.values.begin(), flag.values.end());
   }
+  return words;
+}
+
+std::string PictureCommand::value(const std::string& flag) const {
+  for (const Flag& given : flags_)
+    if (given.name == flag && !given.values.empty()) return given.values.front();
+  return {};
+}
+
+std::string PictureCommand::text(const std::string& scene,
+                                 const std::map<std::string, std::string>& instead) const {
+  const std::vector<std::string> words = this->words(scene, instead);
   std::vector<const char*> pointers;
   pointers.reserve(words.size());
   for (const std::string& word : words) pointers.push_back(word.c_str());
