@@ -21,6 +21,7 @@ WRAPPED = [
     (r"(draco/.*|meshoptimizer\.h)", r"(tests/)?scene/(import/)?[^/]*\.cpp"),
     (r"zstd\.h", r"(core/ktx2/level|tests/core/.*)\.cpp"),
     (r"CLI/.*", r"apps/.*"),
+    (r"httplib\.h", r"apps/serve/(http_server|routes|workers)\.(cpp|h)"),
     (r"(gtest|gmock)/.*", r"tests/.*"),
 ]
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)

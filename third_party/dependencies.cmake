@@ -30,6 +30,7 @@ endif()
 find_package(nlohmann_json REQUIRED)
 find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)
+pkg_check_modules(httplib REQUIRED cpp-httplib)
 find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)  # its header alone: scene/import/tinygltf.h says why
 find_package(draco REQUIRED)
 find_package(meshoptimizer REQUIRED)

@@ -40,6 +40,20 @@ Image cut(const Image& image, int x, int y, int width, int height) {
   return part;
 }
 
+Image relative_error(const Image& picture, const Image& error) {
+  Image map(picture.width, picture.height, 1);
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      double sum = 0;
+      for (int c = 0; c < 3; ++c) {
+        const double value = picture.pixel(x, y)[c], off = error.pixel(x, y)[c];
+        sum += off * off / (value * value + 0.01);
+      }
+      *map.pixel(x, y) = float(std::sqrt(sum / 3));
+    }
+  return map;
+}
+
 double round_scale(const Image& map) {
   std::vector<float> values;
   std::copy_if(map.values.begin(), map.values.end(), std::back_inserter(values),

@@ -20,6 +20,9 @@ Image shrink(const Image& image, int longest);
 /// Part of `image`.
 Image cut(const Image& image, int x, int y, int width, int height);
 
+/// One channel: square root of the channels' mean squared relative standard error, as --error counts it.
+Image relative_error(const Image& picture, const Image& error);
+
 /// A round number, 1, 2 or 5 times a power of ten, that at least 99 of 100 values do not exceed; 1 when all
 /// are zero. Values that are not finite do not count.
 double round_scale(const Image& map);

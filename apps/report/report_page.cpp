@@ -40,21 +40,6 @@ std::string stopped_by(const Json& stats) {
   return !missed ? text : fmt::format("{}, before the error of {}", text, percent(error));
 }
 
-/// Square root of the channels' mean squared relative standard error, as --error counts it.
-Image relative_error(const Image& picture, const Image& error) {
-  Image map(picture.width, picture.height, 1);
-  for (int y = 0; y < picture.height; ++y)
-    for (int x = 0; x < picture.width; ++x) {
-      double sum = 0;
-      for (int c = 0; c < 3; ++c) {
-        const double value = picture.pixel(x, y)[c], off = error.pixel(x, y)[c];
-        sum += off * off / (value * value + 0.01);
-      }
-      *map.pixel(x, y) = float(std::sqrt(sum / 3));
-    }
-  return map;
-}
-
 Image sample_counts(const Film& film) {
   Image map(film.width(), film.height(), 1);
   for (int y = 0; y < film.height(); ++y)

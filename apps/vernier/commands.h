@@ -48,6 +48,7 @@ void register_develop(Program& program);
 void register_gallery(Program& program);
 void register_farm(Program& program);
 void register_merge(Program& program);
+void register_serve(Program& program);
 void register_bench(Program& program);
 void register_cli_files(Program& program);
 

@@ -21,9 +21,9 @@ namespace {
 
 /// Every subcommand, in the order of `vernier --help`.
 constexpr void (*subcommands[])(Program&) = {
-    register_render,  register_info,    register_verify,    register_compare,
-    register_denoise, register_develop, register_merge,     register_gallery,
-    register_farm,    register_bench,   register_cli_files,
+    register_render,  register_info,    register_verify, register_compare,
+    register_denoise, register_develop, register_merge,  register_gallery,
+    register_farm,    register_serve,   register_bench,  register_cli_files,
 };
 
 /// The subcommand that was being read when parsing failed, innermost.

@@ -12,7 +12,8 @@ namespace {
 const std::set<std::string> not_of_the_picture{
     "--output", "--format",      "--stats",      "--report",  "--checkpoint",    "--checkpoint-every",
     "--resume", "--progress",    "--quiet",      "--verbose", "--threads",       "--frames",
-    "--fps",    "--write-every", "--keep-going", "--help",    "--skip-existing", "--drop-checkpoint"};
+    "--fps",    "--write-every", "--keep-going", "--help",    "--skip-existing", "--drop-checkpoint",
+    "--host",   "--port"};
 
 }  // namespace
 
@@ -32,8 +33,8 @@ std::vector<CommandFlag> flags_of(const CLI::App& command) {
 
 PictureCommand::PictureCommand(const CLI::App& render) : flags_(flags_of(render)) {}
 
-std::string PictureCommand::text(const std::string& scene,
-                                 const std::map<std::string, std::string>& instead) const {
+std::vector<std::string> PictureCommand::words(const std::string& scene,
+                                               const std::map<std::string, std::string>& instead) const {
   std::vector<std::string> words{"vernier", "render", scene};
   for (const CommandFlag& flag : flags_) {
     const auto other = instead.find(flag.name);
@@ -46,7 +47,18 @@ std::string PictureCommand::text(const std::string& scene,
     else
       words.insert(words.end(), flag.values.begin(), flag.values.end());
   }
-  return shell_quoted(words);
+  return words;
+}
+
+std::string PictureCommand::value(const std::string& flag) const {
+  for (const CommandFlag& given : flags_)
+    if (given.name == flag && !given.values.empty()) return given.values.front();
+  return {};
+}
+
+std::string PictureCommand::text(const std::string& scene,
+                                 const std::map<std::string, std::string>& instead) const {
+  return shell_quoted(words(scene, instead));
 }
 
 }  // namespace vernier::apps

@@ -29,6 +29,11 @@ class PictureCommand {
   /// The command for a picture of `scene`, with these flags in place of what was given; an empty value leaves
   /// a flag out.
   std::string text(const std::string& scene, const std::map<std::string, std::string>& instead) const;
+  /// The same as words, "vernier" first.
+  std::vector<std::string> words(const std::string& scene,
+                                 const std::map<std::string, std::string>& instead) const;
+  /// What was given to a flag; empty where it was not, or takes nothing.
+  std::string value(const std::string& flag) const;
 
  private:
   std::vector<CommandFlag> flags_;

@@ -82,10 +82,7 @@ void add_output_flags(CLI::App& command, RenderFlags& flags) {
                   "layers of the .exr beside its colour: error,albedo,...; 'help' lists them, 'all' is all")
       ->type_name("LIST");
   add_light_groups_flag(command, flags.light_groups);
-  command
-      .add_option("--denoise", flags.denoise,
-                  "filter the noise out before writing; 'help' lists the filters (docs/denoise.md)")
-      ->type_name("FILTER");
+  add_denoise_flag(command, flags);
   add_preview_flags(command, flags.run);
   add_display_flags(command, flags.display);
   add_exr_flags(command, flags.exr);
@@ -148,6 +145,19 @@ void add_max_depth_flag(CLI::App& command, RenderFlags& flags) {
       ->capture_default_str();
 }
 
+void add_picture_flags(CLI::App& command, RenderFlags& flags) {
+  add_quality_flags(command, flags);
+  add_camera_flags(command, flags.camera);
+  add_integrator_flags(command, flags);
+}
+
+void add_denoise_flag(CLI::App& command, RenderFlags& flags) {
+  command
+      .add_option("--denoise", flags.denoise,
+                  "filter the noise out before writing; 'help' lists the filters (docs/denoise.md)")
+      ->type_name("FILTER");
+}
+
 void add_render_flags(CLI::App& command, RenderFlags& flags) {
   command
       .add_option(
@@ -160,9 +170,7 @@ void add_render_flags(CLI::App& command, RenderFlags& flags) {
       ->type_name("");
   add_import_flags(command, flags.import);
   add_run_flags(command, flags.run);
-  add_quality_flags(command, flags);
-  add_camera_flags(command, flags.camera);
-  add_integrator_flags(command, flags);
+  add_picture_flags(command, flags);
   add_output_flags(command, flags);
 }
 

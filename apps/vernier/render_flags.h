@@ -57,7 +57,11 @@ struct RenderFlags {
 /// Declares the flags on `command`.
 void add_render_flags(CLI::App& command, RenderFlags& flags);
 
-/// Parts of them, for other commands: how samples are spread and how long paths are.
+/// Parts of them, for other commands. All that says what a picture shows and how well, but for what is done
+/// with it.
+void add_picture_flags(CLI::App& command, RenderFlags& flags);
+void add_denoise_flag(CLI::App& command, RenderFlags& flags);
+/// How samples are spread and how long paths are.
 void add_adaptive_flag(CLI::App& command, RenderFlags& flags);
 void add_max_depth_flag(CLI::App& command, RenderFlags& flags);
 

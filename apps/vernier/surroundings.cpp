@@ -28,11 +28,9 @@ std::vector<std::string> names_without_file() {
   return names;
 }
 
-Surroundings built_in(const BuiltInEnvironment& entry, float rotation, float scale) {
+Surroundings built_in(const BuiltInEnvironment& entry) {
   auto environment = std::make_shared<EnvironmentDescription>();
   environment->picture = entry.picture();
-  environment->rotation = rotation;
-  environment->scale = scale;
   return {entry.name, std::move(environment), entry.turns_with_camera};
 }
 
@@ -80,14 +78,19 @@ std::optional<Surroundings> read_surroundings(const SurroundingsFlags& flags) {
     throw Error(ErrorKind::usage, "--env-rotate and --env-scale need --env studio, sky or FILE");
   if (flags.environment.empty()) return std::nullopt;
   if (flags.environment == nothing) return Surroundings{flags.environment, nullptr};
-  const float rotation = std::remainder(flags.rotate, 360.0f) * pi / 180;
   for (const auto& entry : built_in_environments())
-    if (entry.name == flags.environment) return built_in(entry, rotation, flags.scale);
+    if (entry.name == flags.environment) return turned_and_scaled(built_in(entry), flags);
   auto environment = std::make_shared<EnvironmentDescription>();
   environment->picture = read_picture(flags.environment);
-  environment->rotation = rotation;
+  return turned_and_scaled({flags.environment, std::move(environment)}, flags);
+}
+
+Surroundings turned_and_scaled(const Surroundings& plain, const SurroundingsFlags& flags) {
+  if (!plain.environment) return plain;
+  auto environment = std::make_shared<EnvironmentDescription>(*plain.environment);
+  environment->rotation = std::remainder(flags.rotate, 360.0f) * pi / 180;
   environment->scale = flags.scale;
-  return Surroundings{flags.environment, std::move(environment)};
+  return {plain.name, std::move(environment), plain.turns_with_camera};
 }
 
 void replace_surroundings(SceneDescription& description, const std::optional<Surroundings>& asked,

@@ -36,6 +36,8 @@ struct Surroundings {
 
 /// Those that the flags ask for; none when they leave it to the scene. Throws Error.
 std::optional<Surroundings> read_surroundings(const SurroundingsFlags& flags);
+/// Others, neither turned nor scaled, as the flags turn and scale them.
+Surroundings turned_and_scaled(const Surroundings& plain, const SurroundingsFlags& flags);
 
 /// The scene with nothing but them around it, if there are any, and a note if it had some of its own.
 void replace_surroundings(SceneDescription& description, const std::optional<Surroundings>& asked,

@@ -11,6 +11,12 @@
 
 namespace vernier {
 
+/// An animation of a file: its name, which may be empty, and when its last key is, in seconds.
+struct AnimationSpan {
+  std::string name;
+  double seconds = 0;
+};
+
 /// A .gltf or .glb file in memory, to be described at several times and in several variants. What depends on
 /// neither, such as textures, materials and meshes that do not change their shape, is read once, and shared
 /// or copied from then on. For one thread at a time.
@@ -31,6 +37,8 @@ class VERNIER_API SceneFile {
 
   /// Names of the file's variants (KHR_materials_variants), in its order.
   std::vector<std::string> variants() const;
+  /// In the file's order.
+  std::vector<AnimationSpan> animations() const;
 
  private:
   friend SceneDescription import_scene(const std::string& path, const ImportOptions& options);

@@ -216,6 +216,19 @@ SceneDescription SceneFile::describe(const ImportOptions& options) {
 
 std::vector<std::string> SceneFile::variants() const { return variant_names(content_->document()); }
 
+std::vector<AnimationSpan> SceneFile::animations() const {
+  const tinygltf::Model& model = content_->document().model();
+  std::vector<AnimationSpan> spans;
+  for (const auto& animation : model.animations) {
+    AnimationSpan& span = spans.emplace_back(AnimationSpan{animation.name});
+    for (const auto& sampler : animation.samplers) {
+      const auto& latest = model.accessors[size_t(sampler.input)].maxValues;  // which glTF demands here
+      if (!latest.empty()) span.seconds = std::max(span.seconds, latest[0]);
+    }
+  }
+  return spans;
+}
+
 SceneDescription import_scene(const std::string& path, const ImportOptions& options) {
   return SceneFile::Content(AssetFiles(path, options.allow_outside_files)).describe(options, false);
 }
