@@ -155,7 +155,7 @@ void plan_seeds(FarmPlan& plan, const FarmFlags& flags, const CLI::App& command,
   plan.parts = *flags.parts;
   if (plan.parts < 2) throw Error(ErrorKind::usage, "--parts 1 is no farm; 'vernier render' renders it");
   for (const auto& [name, reason] : refused_of_stills)
-    if (!given(command, [&](const std::string& flag) { return flag == name; }).empty())
+    if (!given(command, [name = name](const std::string& flag) { return flag == name; }).empty())
       throw Error(ErrorKind::usage, {}, name, reason);
   find_film_layers(flags.render.layers);  // or it throws: merging knows no other
   SeedParts& seeds = plan.seeds;

