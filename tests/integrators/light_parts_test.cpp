@@ -80,7 +80,8 @@ std::vector<Samples> measure_parts(const Scene& scene, const IntegratorOptions& 
     for (int i = 0; i < samples * side * side; ++i) {
       const int pixel = i % (side * side);
       Sampler sampler(uint32_t(pixel), uint32_t(i / (side * side)), 77 + set);
-      const Ray ray = camera.ray(Vec2f(float(pixel % side), float(pixel / side)) + sampler.next2());
+      const int row = pixel / side, column = pixel % side;
+      const Ray ray = camera.ray(Vec2f(float(column), float(row)) + sampler.next2());
       const Estimate estimate = integrator->estimate(scene, ray, sampler, {0, &sorter});
       for (size_t p = 0; p < count; ++p) sums[set][p] += double(sorter.part(estimate.parts, p).y);
       sums[set][count] += double(estimate.radiance.y);
