@@ -90,7 +90,7 @@ class LightSorter {
   /// Throws Error(usage) on a way or a light that there is not, and on too many groups.
   LightSorter(const LightSplit& split, const Scene& scene);
 
-  /// Layers of the parts, in the order of write().
+  /// Layers of the parts, by the number that part() takes.
   const std::vector<std::string>& layers() const { return layers_; }
   bool is_empty() const { return layers_.empty(); }
 
@@ -105,7 +105,7 @@ class LightSorter {
 
  private:
   size_t group_of(LightSource source) const {
-    if (group_of_instance_.empty()) return 0;  // nobody asks for groups
+    if (layers_.size() == ways_.size()) return 0;  // nobody asks for groups
     switch (source.kind) {
       case LightSource::Kind::instance:
         return group_of_instance_[source.index];

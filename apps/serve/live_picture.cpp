@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/vernier/missing_text.h"
+#include "apps/vernier/render_report.h"
 #include "core/film/error_estimate.h"
 #include "integrators/render/picture.h"
 
@@ -59,20 +60,6 @@ nlohmann::ordered_json to_json(const ErrorEstimate& error) {
           {"low", error.low},
           {"high", error.high},
           {"unreliable", error.unreliable}};
-}
-
-const char* text_of(StopReason reason) {
-  switch (reason) {
-    case StopReason::samples:
-      return "samples";
-    case StopReason::time:
-      return "time";
-    case StopReason::error:
-      return "error";
-    case StopReason::interrupted:
-      break;
-  }
-  return "interrupted";
 }
 
 }  // namespace
@@ -255,7 +242,7 @@ void LivePicture::tell() {
     json["error"] = to_json(status.error);
     json["missing"] = missing_text(status.missing);
   }
-  if (ended_by_) json["ended_by"] = text_of(*ended_by_);
+  if (ended_by_) json["ended_by"] = name_of(*ended_by_);
   if (is_filtered() && frame_->step == 1) {
     json["denoised"] = denoised_json(*filtered_->denoiser, filtered_->denoised.error);
     json["denoised"]["samples"] = filtered_->samples;

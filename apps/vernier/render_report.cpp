@@ -24,20 +24,6 @@ uint64_t total(const RayCounts& rays) { return rays.camera + rays.bounce + rays.
 
 double rate(uint64_t count, double seconds) { return seconds > 0 ? double(count) / seconds : 0; }
 
-std::string_view name(StopReason reason) {
-  switch (reason) {
-    case StopReason::samples:
-      return "samples";
-    case StopReason::time:
-      return "time";
-    case StopReason::error:
-      return "error";
-    case StopReason::interrupted:
-      return "interrupted";
-  }
-  return "";
-}
-
 /// A figure that JSON can hold: null while it is not known.
 Json known(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -54,7 +40,7 @@ Json picture_json(const RenderReport& report, const RenderFlags& flags, const Re
                   {"samples", result.samples},
                   {"samples_per_pixel", samples_per_pixel(result)},
                   {"asked", asked_json(report.settings)},
-                  {"stopped_by", name(result.reason)},
+                  {"stopped_by", name_of(result.reason)},
                   {"files", report.files}};
   if (report.lens) picture["lens"] = to_json(*report.lens);
   if (report.settings.crop.width > 0) picture["crop"] = crop_text(report.settings.crop);
@@ -112,6 +98,20 @@ std::string shortfall(const RenderReport& report, const RenderResult& result) {
 
 }  // namespace
 
+std::string_view name_of(StopReason reason) {
+  switch (reason) {
+    case StopReason::samples:
+      return "samples";
+    case StopReason::time:
+      return "time";
+    case StopReason::error:
+      return "error";
+    case StopReason::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
 Json asked_json(const RenderSettings& options) {
   return {{"samples_per_pixel", options.limits.spp > 0 ? Json(options.limits.spp) : Json(nullptr)},
           {"seconds", known(options.limits.seconds)},
@@ -140,7 +140,7 @@ Metadata image_metadata(const RenderReport& report, const RenderFlags& flags, co
       {"vernier:accelerator", report.accelerator},
       {"vernier:platform", platform()},
       {"vernier:seed", fmt::format("{}", flags.seed)},
-      {"vernier:stoppedBy", std::string(name(result.reason))},
+      {"vernier:stoppedBy", std::string(name_of(result.reason))},
       {"vernier:size", fmt::format("{}x{}", report.settings.width, report.settings.height)},
   };
   metadata.merge(result_metadata(result));

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 
 #include "apps/vernier/lens.h"
 #include "apps/vernier/notice_log.h"
@@ -35,6 +36,9 @@ struct RenderReport {
 
 /// When rendering is to end, as in the --stats file.
 nlohmann::ordered_json asked_json(const RenderSettings& settings);
+
+/// "samples", "time", "error" or "interrupted".
+std::string_view name_of(StopReason reason);
 
 /// Image header entries that say how the picture came about.
 Metadata image_metadata(const RenderReport& report, const RenderFlags& flags, const RenderResult& result);
