@@ -23,6 +23,7 @@ int status_of(const std::string& response) {
 
 [[noreturn]] void become_server(std::vector<std::string> words, int output) {
   std::vector<char*> raw;
+  raw.reserve(words.size() + 1);
   for (auto& word : words) raw.push_back(word.data());
   raw.push_back(nullptr);
   dup2(output, STDOUT_FILENO);
@@ -65,7 +66,7 @@ std::string Connection::read_until(const std::string& text) {
   std::array<char, 65536> buffer;
   for (;;) {
     if (const size_t found = unread_.find(text); !text.empty() && found != std::string::npos) {
-      const std::string read = unread_.substr(0, found + text.size());
+      std::string read = unread_.substr(0, found + text.size());
       unread_.erase(0, read.size());
       return read;
     }
