@@ -34,6 +34,7 @@ EnvironmentLight::EnvironmentLight(std::shared_ptr<const EnvironmentDescription>
 
 Rgb EnvironmentLight::texel(int x, int y) const {
   Rgb value = rgb_at(*description_->picture, x, y);
+  if (bad_texels_ == 0) return value;
   for (int c = 0; c < 3; ++c)
     if (!(std::isfinite(value[c]) && value[c] >= 0)) value[c] = 0;
   return value;
@@ -44,7 +45,7 @@ Rgb EnvironmentLight::lookup(const Vec2f& uv) const {
   const float x = uv.x * float(w) - 0.5f, y = uv.y * float(h) - 0.5f;
   const float x_floor = std::floor(x), y_floor = std::floor(y);
   const float fx = x - x_floor, fy = y - y_floor;
-  const int x0 = (int(x_floor) + w) % w, x1 = (x0 + 1) % w;
+  const int x0 = x_floor < 0 ? w - 1 : int(x_floor), x1 = x0 + 1 < w ? x0 + 1 : 0;
   const int y0 = std::clamp(int(y_floor), 0, h - 1), y1 = std::clamp(int(y_floor) + 1, 0, h - 1);
   const Rgb top = texel(x0, y0) * (1 - fx) + texel(x1, y0) * fx;
   const Rgb bottom = texel(x0, y1) * (1 - fx) + texel(x1, y1) * fx;
