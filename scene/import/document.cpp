@@ -143,6 +143,7 @@ void Document::parse_model(json& root) {
       accessor.erase("max");
     }
   complete_spot_lights(root);
+  prepare_pointers(root);
   // tinygltf refuses indices whose accessor has no buffer view, as compressed and sparse ones have not. They
   // get one that does not exist, and it is taken away again below.
   const int no_view = root.contains("bufferViews") ? int(root["bufferViews"].size()) : 0;
@@ -153,17 +154,52 @@ void Document::parse_model(json& root) {
 
   const std::string text = root.dump(-1, ' ', false, json::error_handler_t::replace);
   root = json();
+  parse_text(text, model_);
+  model_.bufferViews.pop_back();
+  for (auto& accessor : model_.accessors)
+    if (accessor.bufferView == no_view) accessor.bufferView = -1;
+}
+
+void Document::parse_text(const std::string& text, tinygltf::Model& model) const {
   if (text.size() > std::numeric_limits<unsigned>::max()) fail("", "more than 4 GiB of JSON");
   tinygltf::TinyGLTF parser;
   std::string errors, warnings;
-  if (!parser.LoadASCIIFromString(&model_, &errors, &warnings, text.data(), unsigned(text.size()), "",
+  if (!parser.LoadASCIIFromString(&model, &errors, &warnings, text.data(), unsigned(text.size()), "",
                                   tinygltf::NO_REQUIRE)) {
     std::replace(errors.begin(), errors.end(), '\n', ' ');
     fail("", "not a valid glTF file: " + errors);
   }
-  model_.bufferViews.pop_back();
-  for (auto& accessor : model_.accessors)
-    if (accessor.bufferView == no_view) accessor.bufferView = -1;
+}
+
+void Document::prepare_pointers(json& root) {
+  if (!root.contains("animations")) return;
+  bool pointers = false;
+  for (auto& animation : root["animations"])
+    for (auto& channel : animation["channels"]) {
+      json& target = channel["target"];
+      pointers = pointers || target["path"] == "pointer";
+      if (!target.contains("node")) target["node"] = -1;
+    }
+  if (!pointers) return;
+  json parts = {{"asset", {{"version", "2.0"}}}};
+  for (const char* part : {"materials", "cameras", "extensions"})
+    if (root.contains(part)) parts[part] = root[part];
+  animatable_ = std::make_shared<const json>(std::move(parts));
+}
+
+void Document::set_properties(std::span<const PropertyValue> values) {
+  if (!animatable_) return;
+  json parts = *animatable_;
+  for (const auto& [pointer, value] : values) {
+    json& property = parts[json::json_pointer(pointer)];
+    property = value.size() == 1 ? json(value[0]) : json(value);
+  }
+  tinygltf::Model changed;
+  parse_text(parts.dump(-1, ' ', false, json::error_handler_t::replace), changed);
+  model_.materials = std::move(changed.materials);
+  model_.cameras = std::move(changed.cameras);
+  model_.lights = std::move(changed.lights);
+  model_.extensions = std::move(changed.extensions);
 }
 
 std::span<const uint8_t> Document::locate(int buffer, size_t offset, size_t length,

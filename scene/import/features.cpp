@@ -28,6 +28,8 @@ constexpr ExtensionEntry extensions[] = {
     {"EXT_mesh_gpu_instancing", Status::exact, ""},
     {"EXT_meshopt_compression", Status::exact, ""},
     {"EXT_texture_webp", Status::exact, ""},
+    {"KHR_animation_pointer", Status::exact,
+     "numbers of materials and their textures, lights, cameras, nodes and morph weights; visibility"},
     {"KHR_draco_mesh_compression", Status::exact, ""},
     {"KHR_lights_punctual", Status::exact, "candela and lux are taken as W/sr and W/m^2"},
     {"KHR_materials_anisotropy", Status::exact, ""},
@@ -62,7 +64,6 @@ constexpr ExtensionEntry extensions[] = {
     {"KHR_texture_transform", Status::exact, ""},
     {"KHR_xmp_json_ld", Status::exact, "metadata, nothing to render"},
 
-    {"KHR_animation_pointer", Status::ignored, "only nodes and morph weights are animated"},
     {"MSFT_lod", Status::ignored, "the most detailed level is rendered"},
 };
 

@@ -7,6 +7,7 @@
 
 #include "core/base/fingerprint.h"
 #include "core/base/parallel.h"
+#include "scene/import/animated_property.h"
 #include "scene/import/cameras_lights.h"
 #include "scene/import/features.h"
 #include "scene/import/image_light.h"
@@ -121,7 +122,9 @@ class SceneFile::Content {
   explicit Content(AssetFiles files)
       : document_(std::move(files)),
         features_(report_features(document_.model())),
-        materials_(read_materials(document_, material_notices_)) {}
+        materials_(read_materials(document_, material_notices_)) {
+    note_unknown_pointers(document_, features_);
+  }
 
   const Document& document() const { return document_; }
 
@@ -130,6 +133,8 @@ class SceneFile::Content {
 
  private:
   void add_shapes(const ImportOptions& options, bool keep, SceneDescription& scene);
+  /// Reads anew what animations change beyond nodes, if they do or did so.
+  void set_properties(std::span<const PropertyValue> values);
   void add_environment(SceneDescription& scene, std::vector<std::string>& fingerprints);
 
   struct ImageLight {
@@ -145,6 +150,7 @@ class SceneFile::Content {
   ImageCache images_;
   MeshCache meshes_;
   std::optional<ImageLight> image_light_;  ///< none: not read yet
+  bool at_rest_ = true;                    ///< materials and lights are those of the file
 };
 
 SceneDescription SceneFile::Content::describe(const ImportOptions& options, bool keep) {
@@ -171,8 +177,10 @@ SceneDescription SceneFile::Content::describe(const ImportOptions& options, bool
 
 void SceneFile::Content::add_shapes(const ImportOptions& options, bool keep, SceneDescription& scene) {
   std::vector<NodePose> poses = rest_pose(document_, scene.notices);
+  std::vector<PropertyValue> values;
   if (options.time || !options.animation.empty())
-    pose_by_animations(document_, options.animation, options.time.value_or(0), poses, scene.notices);
+    pose_by_animations(document_, options.animation, options.time.value_or(0), poses, values, scene.notices);
+  set_properties(values);
   const NodePlaces places = place_nodes(document_, poses);
   add_cameras_and_lights(document_, places, scene);
 
@@ -191,6 +199,16 @@ void SceneFile::Content::add_shapes(const ImportOptions& options, bool keep, Sce
       read_meshes(document_, placement.meshes, places.to_world, repairs, keep ? &meshes_ : nullptr);
   append(repairs.notices(), scene.notices);
   check_extents(document_, scene);
+}
+
+void SceneFile::Content::set_properties(std::span<const PropertyValue> values) {
+  if (values.empty() && at_rest_) return;
+  at_rest_ = values.empty();
+  document_.set_properties(values);
+  material_notices_.clear();
+  materials_ = read_materials(document_, material_notices_);
+  images_.roughness.clear();
+  image_light_.reset();
 }
 
 void SceneFile::Content::add_environment(SceneDescription& scene, std::vector<std::string>& fingerprints) {
@@ -222,8 +240,11 @@ std::vector<AnimationSpan> SceneFile::animations() const {
   for (const auto& animation : model.animations) {
     AnimationSpan& span = spans.emplace_back(AnimationSpan{animation.name});
     for (const auto& sampler : animation.samplers) {
-      const auto& latest = model.accessors[size_t(sampler.input)].maxValues;  // which glTF demands here
-      if (!latest.empty()) span.seconds = std::max(span.seconds, latest[0]);
+      try {
+        span.seconds = std::max(span.seconds, latest_key(content_->document(), sampler));
+      } catch (const Error&) {
+        // What is wrong with it is said when it is asked for.
+      }
     }
   }
   return spans;

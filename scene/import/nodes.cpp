@@ -50,13 +50,6 @@ std::vector<int> scene_roots(const Document& document, const std::vector<int>& p
   return roots;
 }
 
-/// KHR_node_visibility: hides the node and what is below it.
-bool is_hidden(const tinygltf::Node& node) {
-  const auto visibility = node.extensions.find("KHR_node_visibility");
-  if (visibility == node.extensions.end() || !visibility->second.Has("visible")) return false;
-  return !visibility->second.Get("visible").Get<bool>();
-}
-
 }  // namespace
 
 NodePlaces place_nodes(const Document& document, const std::vector<NodePose>& poses) {
@@ -90,7 +83,7 @@ NodePlaces place_nodes(const Document& document, const std::vector<NodePose>& po
   while (!pending.empty()) {
     const int node = pending.back();
     pending.pop_back();
-    if (is_hidden(nodes[size_t(node)])) continue;
+    if (!poses[size_t(node)].visible) continue;
     places.shown.push_back(node);
     const auto& children = nodes[size_t(node)].children;
     pending.insert(pending.end(), children.rbegin(), children.rend());
