@@ -86,6 +86,13 @@ bool uses_morph_targets(const tinygltf::Model& model) {
   return false;
 }
 
+bool uses_thin_primitives(const tinygltf::Model& model) {
+  for (const auto& mesh : model.meshes)
+    for (const auto& primitive : mesh.primitives)
+      if (primitive.mode < TINYGLTF_MODE_TRIANGLES) return true;
+  return false;
+}
+
 bool uses_more_colors(const tinygltf::Model& model) {
   for (const auto& mesh : model.meshes)
     for (const auto& primitive : mesh.primitives)
@@ -107,6 +114,11 @@ constexpr CoreEntry core_features[] = {
      "light transport computes occlusion itself (glTF 2.0, 3.9.3)", uses_occlusion},
     {"mesh.primitive.attributes COLOR_1 and up", Status::exact,
      "only COLOR_0 multiplies the base colour (glTF 2.0, 3.9.2); the others mean nothing", uses_more_colors},
+    {"mesh.primitive.mode POINTS and LINES", Status::approximated,
+     "they are solids in the scene, as thin as a pixel or a few when all of them fill the picture, not a "
+     "pixel "
+     "wide from anywhere; those without normals are not lit",
+     uses_thin_primitives},
     {"mesh.primitive.targets", Status::exact, "morphed by the weights at that time", uses_morph_targets},
     {"sampler.minFilter mipmaps", Status::exact, "the samples of a pixel average the texels they meet",
      uses_mipmaps},

@@ -16,6 +16,7 @@
 #include "scene/import/meshes.h"
 #include "scene/import/nodes.h"
 #include "scene/import/textures.h"
+#include "scene/import/thin_bodies.h"
 
 namespace vernier {
 namespace {
@@ -162,7 +163,6 @@ SceneDescription SceneFile::Content::describe(const ImportOptions& options, bool
   add_shapes(options, keep, scene);
 
   std::vector<std::string> fingerprints = document_.fingerprints();
-  keep_used_materials(materials_.materials, scene);
   add_textures(document_, materials_.derived, images_, scene, fingerprints);
   add_environment(scene, fingerprints);
   scene.hash = combined_fingerprint(fingerprints);
@@ -189,16 +189,21 @@ void SceneFile::Content::add_shapes(const ImportOptions& options, bool keep, Sce
   for (const int node : places.shown) placer.add_node(node, places, poses[size_t(node)]);
   Placement placement = placer.take();
   scene.instances = std::move(placement.instances);
-  if (placement.without_surface)
+  if (placement.empty)
     scene.notices.push_back(
         {Notice::Severity::warning, "/meshes",
-         fmt::format("{} primitives have no surface (points, lines or no positions) and are left out",
-                     placement.without_surface)});
+         fmt::format("{} primitives have no positions, or too few for a line or triangle, and are left out",
+                     placement.empty)});
   MeshRepairs repairs;
   scene.meshes =
       read_meshes(document_, placement.meshes, places.to_world, repairs, keep ? &meshes_ : nullptr);
   append(repairs.notices(), scene.notices);
   check_extents(document_, scene);
+  add_thin_bodies(document_, placement.meshes, scene);
+
+  std::vector<ImportedMaterial> materials = materials_.materials;
+  append(placement.thin_materials, materials);
+  keep_used_materials(materials, scene);
 }
 
 void SceneFile::Content::set_properties(std::span<const PropertyValue> values) {
