@@ -138,6 +138,15 @@ FeatureUse extension_use(const std::string& name) {
   return {name, Status::ignored, "this extension is not known"};
 }
 
+std::vector<FeatureUse> known_extensions() {
+  std::vector<FeatureUse> known;
+  for (const auto& [name, status, note] : extensions)
+    known.push_back({std::string(name), status, std::string(note)});
+  std::sort(known.begin(), known.end(),
+            [](const FeatureUse& a, const FeatureUse& b) { return a.name < b.name; });
+  return known;
+}
+
 std::vector<FeatureUse> report_features(const tinygltf::Model& model) {
   std::vector<FeatureUse> features;
   for (const auto& name : model.extensionsUsed) features.push_back(extension_use(name));
