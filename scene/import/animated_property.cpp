@@ -29,7 +29,7 @@ constexpr AnimatedProperty properties[] = {
     {"/meshes/{}/weights", 0},
     {"/meshes/{}/weights/{}"},
 
-    {"/cameras/{}/perspective/yfov", 1, 1e-6, 3.1415},
+    {"/cameras/{}/perspective/yfov", 1, 1e-6},
     {"/cameras/{}/perspective/aspectRatio", 1, 1e-6},
     {"/cameras/{}/perspective/znear"},
     {"/cameras/{}/perspective/zfar"},

@@ -103,6 +103,9 @@ class Poser {
             fmt::format("a channel uses sampler {} of {}", channel.sampler, animation.samplers.size()));
       const Track track(document_, animation.samplers[size_t(channel.sampler)],
                         fmt::format("/animations/{}/samplers/{}", index, channel.sampler));
+      if (track.has_equal_times())
+        warn(fmt::format("/animations/{}/samplers/{}/input", index, channel.sampler),
+             "keys share a time, where the value jumps");
       if (target->property->width > 0) track.expect_width(target->property->width);
       set(*target, in_range(*target, track.at(time_, target->property->blend)));
       span.first = std::min(span.first, track.first_time());
@@ -128,10 +131,12 @@ class Poser {
       clamped = clamped || !(v >= property.lower && v <= property.upper);
       v = std::clamp(v, property.lower, property.upper);
     }
-    if (clamped)
-      notices_.push_back({Notice::Severity::warning, target.pointer,
-                          "the animated value is outside its range and was clamped"});
+    if (clamped) warn(target.pointer, "the animated value is outside its range and was clamped");
     return value;
+  }
+
+  void warn(const std::string& place, const char* text) {
+    notices_.push_back({Notice::Severity::warning, place, text});
   }
 
   void set(const AnimationTarget& target, std::vector<double> value) {

@@ -49,8 +49,8 @@ Track::Track(const Document& document, const tinygltf::AnimationSampler& sampler
       cubic_(sampler.interpolation == "CUBICSPLINE"),
       step_(sampler.interpolation == "STEP") {
   for (size_t i = 0; i < times_.size(); ++i)
-    if (!std::isfinite(times_[i]) || (i > 0 && !(times_[i] > times_[i - 1])))
-      document_.fail(place_ + "/input", fmt::format("time {} does not increase", i));
+    if (!std::isfinite(times_[i]) || (i > 0 && times_[i] < times_[i - 1]))
+      document_.fail(place_ + "/input", fmt::format("time {} is not after the one before", i));
   if (values_.size() % (times_.size() * (cubic_ ? 3 : 1)) != 0)
     document_.fail(place_ + "/output",
                    fmt::format("{} values do not divide among {} times", values_.size(), times_.size()));

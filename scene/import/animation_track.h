@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ class Track {
 
   double first_time() const { return double(times_.front()); }
   double last_time() const { return double(times_.back()); }
+
+  /// Whether keys share a time, which glTF forbids: the value then jumps from the first to the last of them.
+  bool has_equal_times() const { return std::adjacent_find(times_.begin(), times_.end()) != times_.end(); }
 
   /// The value at a time; before the first key and after the last those hold. Throws Error(input) unless it
   /// is finite.

@@ -102,7 +102,9 @@ void Document::read_buffers(const json& root, std::span<const uint8_t> binary_ch
       bytes = storage_.back().span();
       fingerprints_.push_back(fingerprint(bytes));
     } else if (bytes.empty()) {
-      fail(place, "the buffer has no uri and the file has no binary chunk for it");
+      // Nothing may use it, and only then it does no harm: see view().
+      buffers_.emplace_back();
+      continue;
     }
     const size_t length = buffer["byteLength"];
     if (length > bytes.size())
@@ -133,6 +135,25 @@ void Document::complete_spot_lights(json& root) {
   }
 }
 
+void Document::normalize_colors(json& root) {
+  if (!root.contains("meshes") || !root.contains("accessors")) return;
+  size_t mended = 0;
+  for (const auto& mesh : root["meshes"])
+    for (const auto& primitive : mesh["primitives"]) {
+      if (!primitive["attributes"].contains("COLOR_0")) continue;
+      json& accessor = root["accessors"][primitive["attributes"]["COLOR_0"].get<size_t>()];
+      constexpr int float_type = 5126;
+      if (accessor["componentType"] == float_type || accessor.value("normalized", false)) continue;
+      accessor["normalized"] = true;
+      ++mended;
+    }
+  if (mended)
+    notices_.push_back({Notice::Severity::warning, "/accessors",
+                        fmt::format("{} accessors of COLOR_0 hold integers that are not said to be "
+                                    "normalized; they are taken for that",
+                                    mended)});
+}
+
 void Document::parse_model(json& root) {
   root.erase("buffers");
   root.erase("images");
@@ -143,6 +164,7 @@ void Document::parse_model(json& root) {
       accessor.erase("max");
     }
   complete_spot_lights(root);
+  normalize_colors(root);
   prepare_pointers(root);
   // tinygltf refuses indices whose accessor has no buffer view, as compressed and sparse ones have not. They
   // get one that does not exist, and it is taken away again below.
@@ -211,6 +233,14 @@ std::span<const uint8_t> Document::locate(int buffer, size_t offset, size_t leng
   return bytes.subspan(offset, length);
 }
 
+std::span<const uint8_t> Document::view(int index) const {
+  const auto bytes = views_[size_t(index)];
+  if (bytes.empty())
+    fail(fmt::format("/buffers/{}", model_.bufferViews[size_t(index)].buffer),
+         "the buffer has no uri and the file has no binary chunk for it");
+  return bytes;
+}
+
 void Document::locate_views() {
   const auto& views = model_.bufferViews;
   views_.resize(views.size());
@@ -224,6 +254,7 @@ void Document::locate_views() {
       views_[i] = decoded[i].span();
       return;
     }
+    if (buffers_[size_t(views[i].buffer)].empty()) return;
     views_[i] = locate(views[i].buffer, views[i].byteOffset, views[i].byteLength, place);
   });
   for (auto& bytes : decoded)

@@ -45,8 +45,8 @@ class Document {
   /// Changes the model: these properties of animatable() have these values, all others are at rest.
   void set_properties(std::span<const PropertyValue> values);
 
-  /// Bytes of a buffer view, decompressed.
-  std::span<const uint8_t> view(int index) const { return views_[size_t(index)]; }
+  /// Bytes of a buffer view, decompressed. Throws Error(input) when its buffer has no data.
+  std::span<const uint8_t> view(int index) const;
 
   /// Fingerprints of the scene file and the buffers read, in order.
   const std::vector<std::string>& fingerprints() const { return fingerprints_; }
@@ -64,6 +64,8 @@ class Document {
   void parse_text(const std::string& text, tinygltf::Model& model) const;
   /// Gives spot lights without a cone, which tinygltf refuses, the default one.
   void complete_spot_lights(nlohmann::json& root);
+  /// Colours in integers are fractions of the largest, said or not (glTF 2.0, 3.7.2.1).
+  void normalize_colors(nlohmann::json& root);
   /// Keeps what set_properties() changes, and gives channels without a node, which tinygltf drops, one that
   /// does not exist.
   void prepare_pointers(nlohmann::json& root);

@@ -220,7 +220,7 @@ struct GltfSchema {
       {{"primitives", array(object(primitive), 1), required}, {"weights", array(number())}, {"name", text()}},
       {}};
 
-  const ObjectSchema perspective{{{"yfov", number(1e-6, 3.1415), required},
+  const ObjectSchema perspective{{{"yfov", number(1e-6), required},
                                   {"aspectRatio", number(1e-6)},
                                   {"znear", number(0), required},
                                   {"zfar", number(0)}},

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "core/base/fingerprint.h"
@@ -84,23 +85,30 @@ void add_textures(const Document& document, const std::vector<RoughnessFromGloss
   }
 }
 
-/// Throws Error(input) when something lies so far out that areas and volumes overflow single precision, which
-/// bounding volume hierarchies compute in.
-void check_extents(const Document& document, const SceneDescription& scene) {
+/// Leaves out, with a warning, what lies so far out that areas and volumes overflow single precision, which
+/// bounding volume hierarchies compute in. `names`: of nodes that were left out before.
+void leave_out_far(std::vector<std::string> names, SceneDescription& scene) {
   constexpr float farthest = 1e18f;
   std::vector<Vec3f> reach(scene.meshes.size(), Vec3f(0, 0, 0));
   parallel_for(reach.size(), [&](size_t i) {
     for (const Vec3f& p : scene.meshes[i].positions) reach[i] = max(reach[i], abs(p));
   });
-  for (const auto& instance : scene.instances) {
+  const auto is_far = [&](const InstanceDescription& instance) {
     const Vec3f& own = reach[instance.mesh];
     const Vec3f placed = instance.to_world.absolute_point(own, 1);
-    if (max_component(own) <= farthest && max_component(placed) <= farthest) continue;
-    document.fail("/nodes",
-                  fmt::format("the mesh of node '{}' reaches farther than {:g} m from the origin, which is "
-                              "too large for single precision; scale the scene down",
-                              instance.name, farthest));
-  }
+    return !(max_component(own) <= farthest && max_component(placed) <= farthest);
+  };
+  for (const auto& instance : scene.instances)
+    if (is_far(instance)) names.push_back(instance.name);
+  if (names.empty()) return;
+  scene.instances.erase(std::remove_if(scene.instances.begin(), scene.instances.end(), is_far),
+                        scene.instances.end());
+  const std::string more = names.size() > 1 ? fmt::format(" and {} more", names.size() - 1) : "";
+  scene.notices.push_back(
+      {Notice::Severity::warning, "/nodes",
+       fmt::format("the mesh of node '{}'{} reaches farther than {:g} m from the origin, which "
+                   "is too large for single precision, and is left out; scale the scene down",
+                   names[0], more, farthest)});
 }
 
 /// Throws Error(input) about the first thing that is not rendered exactly as the file says.
@@ -198,7 +206,7 @@ void SceneFile::Content::add_shapes(const ImportOptions& options, bool keep, Sce
   scene.meshes =
       read_meshes(document_, placement.meshes, places.to_world, repairs, keep ? &meshes_ : nullptr);
   append(repairs.notices(), scene.notices);
-  check_extents(document_, scene);
+  leave_out_far(std::move(placement.too_far), scene);
   add_thin_bodies(document_, placement.meshes, scene);
 
   std::vector<ImportedMaterial> materials = materials_.materials;

@@ -115,8 +115,13 @@ void InstancePlacer::add_instances(int node, const InstanceDescription& prototyp
           ? std::vector<M44d>{M44d()}
           : instance_matrices(document_, node, instancing->second.Get("attributes"));
   for (uint32_t i = 0; i < matrices.size(); ++i) {
+    const auto transform = to_transform(document_, matrices[i] * to_world, place);
+    if (!transform) {
+      result_.too_far.push_back(prototype.name);
+      continue;
+    }
     result_.instances.push_back(prototype);
-    result_.instances.back().to_world = to_transform(document_, matrices[i] * to_world, place);
+    result_.instances.back().to_world = *transform;
     result_.instances.back().object = first_object_ + i;
   }
 }

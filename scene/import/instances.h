@@ -22,7 +22,8 @@ struct Placement {
   std::vector<InstanceDescription> instances;
   std::vector<MeshRequest> meshes;  ///< each shape once, however many nodes use it
   std::vector<ImportedMaterial> thin_materials;
-  size_t empty = 0;  ///< primitives left out: without positions, or with too few
+  std::vector<std::string> too_far;  ///< names of nodes whose places do not fit in floats, left out
+  size_t empty = 0;                  ///< primitives left out: without positions, or with too few
 };
 
 /// Makes one instance per node and primitive, times EXT_mesh_gpu_instancing. Throws Error(input).

@@ -97,14 +97,13 @@ void check_affine(const Document& document, const M44d& m, const std::string& pl
       document.fail(place, "the transform is not affine: the last row of its matrix must be 0 0 0 1");
 }
 
-Transform to_transform(const Document& document, const M44d& m, const std::string& place) {
+std::optional<Transform> to_transform(const Document& document, const M44d& m, const std::string& place) {
   check_affine(document, m, place);
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 3; ++column)
-      if (!std::isfinite(float(m[row][column])))
-        document.fail(place, "the transform is too large for single precision");
+      if (!(std::abs(m[row][column]) <= double(std::numeric_limits<float>::max()))) return std::nullopt;
   const auto row = [&](int i) { return Vec3f(Vec3d(m[i][0], m[i][1], m[i][2])); };
-  return {row(0), row(1), row(2), row(3)};
+  return Transform{row(0), row(1), row(2), row(3)};
 }
 
 }  // namespace vernier
