@@ -13,6 +13,7 @@
 #include "apps/vernier/surroundings.h"
 #include "core/base/quantities.h"
 #include "integrators/render/pixel_filter.h"
+#include "scene/import/features.h"
 #include "scene/scene.h"
 
 namespace vernier::apps {
@@ -24,6 +25,7 @@ struct InfoFlags {
   std::string scene;
   ImportOptions import;
   bool json = false;
+  bool extensions = false;
 };
 
 /// "kind perspective, vertical_degrees 40": the entries of an object that differ from `defaults`.
@@ -49,8 +51,6 @@ void print_list(const char* title, const Json& list, const Json& defaults = Json
 }
 
 void print_features(const Json& features) {
-  if (features.empty()) return;
-  fmt::print("features used\n");
   for (const Json& feature : features) {
     const auto note = feature["note"].get<std::string>();
     fmt::print("  {}\n",
@@ -90,7 +90,19 @@ void print_text(const Json& scene, const SceneCounts& counts, const Bounds& boun
   print_list("cameras", scene["cameras"]);
   print_list("punctual lights", scene["punctual_lights"]);
   print_list("materials", scene["materials"], material_json(MaterialDescription{}));
+  if (!scene["features"].empty()) fmt::print("features used\n");
   print_features(scene["features"]);
+}
+
+void print_json(const Json& json) {
+  fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+/// All extensions that are known, whatever a scene uses.
+ExitCode list_extensions(bool as_json) {
+  const Json extensions = features_json(known_extensions());
+  as_json ? print_json(extensions) : print_features(extensions);
+  return ExitCode::done;
 }
 
 /// The camera and the surroundings that `vernier render` takes when it is told nothing.
@@ -107,6 +119,7 @@ Json default_render_json(Scene& scene, std::span<const CameraDescription> camera
 }
 
 ExitCode run_info(const InfoFlags& flags) {
+  if (flags.extensions) return list_extensions(flags.json);
   require_scene(flags.scene, "info");
   SceneDescription description = import_scene(flags.scene, flags.import);
   const SceneCounts counts = count(description);
@@ -118,7 +131,7 @@ ExitCode run_info(const InfoFlags& flags) {
   json["bounds"] = bounds_json(scene.bounds());
   json["render"] = default_render_json(scene, cameras);
   if (flags.json) {
-    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    print_json(json);
     return ExitCode::done;
   }
   print_text(json, counts, scene.bounds());
@@ -137,6 +150,7 @@ void register_info(Program& program) {
   auto flags = std::make_shared<InfoFlags>();
   add_scene_flags(*command, flags->scene, flags->import);
   command->add_flag("--json", flags->json, "as JSON on standard output");
+  command->add_flag("--extensions", flags->extensions, "all glTF extensions that are known, without a scene");
   command->callback([&program, flags] { program.run = [flags] { return run_info(*flags); }; });
 }
 

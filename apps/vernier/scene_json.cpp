@@ -82,6 +82,8 @@ Json feature_json(const FeatureUse& feature) {
 
 }  // namespace
 
+Json features_json(const std::vector<FeatureUse>& features) { return list_json(features, feature_json); }
+
 Json number_json(double value) {
   return std::isfinite(value) ? Json::parse(fmt::format("{}", static_cast<float>(value))) : Json(nullptr);
 }
@@ -100,7 +102,7 @@ Json scene_json(const SceneDescription& scene, const SceneCounts& counts) {
   json["cameras"] = list_json(scene.cameras, camera_json);
   json["punctual_lights"] = list_json(scene.lights, light_json);
   json["materials"] = list_json(scene.materials, material_json);
-  json["features"] = list_json(scene.features, feature_json);
+  json["features"] = features_json(scene.features);
   json["notices"] = to_json(scene.notices);
   return json;
 }

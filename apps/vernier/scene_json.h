@@ -21,6 +21,9 @@ nlohmann::ordered_json vector_json(const Vector& v) {
 
 nlohmann::ordered_json material_json(const MaterialDescription& material);
 
+/// Names, how each is honoured, and notes.
+nlohmann::ordered_json features_json(const std::vector<FeatureUse>& features);
+
 /// Everything that `vernier info` says of a scene (README.md, "What a scene holds").
 /// but for `bounds` and `render`, which are null.
 nlohmann::ordered_json scene_json(const SceneDescription& scene, const SceneCounts& counts);

@@ -36,6 +36,11 @@ std::vector<double> spherical(const std::vector<double>& a, const std::vector<do
 
 }  // namespace
 
+double latest_key(const Document& document, const tinygltf::AnimationSampler& sampler) {
+  const std::vector<float> times = read_components(document, sampler.input);
+  return double(*std::max_element(times.begin(), times.end()));
+}
+
 Track::Track(const Document& document, const tinygltf::AnimationSampler& sampler, std::string place)
     : document_(document),
       place_(std::move(place)),
@@ -44,16 +49,16 @@ Track::Track(const Document& document, const tinygltf::AnimationSampler& sampler
       cubic_(sampler.interpolation == "CUBICSPLINE"),
       step_(sampler.interpolation == "STEP") {
   for (size_t i = 0; i < times_.size(); ++i)
-    if (!std::isfinite(times_[i]) || (i > 0 && !(times_[i] > times_[i - 1])))
-      document_.fail(place_ + "/input", fmt::format("time {} does not increase", i));
+    if (!std::isfinite(times_[i]) || (i > 0 && times_[i] < times_[i - 1]))
+      document_.fail(place_ + "/input", fmt::format("time {} is not after the one before", i));
   if (values_.size() % (times_.size() * (cubic_ ? 3 : 1)) != 0)
     document_.fail(place_ + "/output",
                    fmt::format("{} values do not divide among {} times", values_.size(), times_.size()));
   width_ = values_.size() / (times_.size() * (cubic_ ? 3 : 1));
 }
 
-std::vector<double> Track::at(double time, bool rotation) const {
-  std::vector<double> value = interpolate(time, rotation);
+std::vector<double> Track::at(double time, Blend blend) const {
+  std::vector<double> value = interpolate(time, blend);
   for (const double v : value)
     if (!std::isfinite(v)) document_.fail(place_ + "/output", "the value is not finite");
   return value;
@@ -64,15 +69,15 @@ void Track::expect_width(size_t width) const {
     document_.fail(place_ + "/output", fmt::format("expected {} values a key, found {}", width, width_));
 }
 
-std::vector<double> Track::interpolate(double time, bool rotation) const {
+std::vector<double> Track::interpolate(double time, Blend blend) const {
   const auto after = std::upper_bound(times_.begin(), times_.end(), time);
   if (after == times_.begin()) return key(0);
   const size_t i = size_t(after - times_.begin()) - 1;
-  if (after == times_.end() || step_) return key(i);
+  if (after == times_.end() || step_ || blend == Blend::step) return key(i);
   const double duration = double(times_[i + 1]) - double(times_[i]);
   const double t = (time - double(times_[i])) / duration;
   if (cubic_) return hermite(i, t, duration);
-  return rotation ? spherical(key(i), key(i + 1), t) : linear(key(i), key(i + 1), t);
+  return blend == Blend::spherical ? spherical(key(i), key(i + 1), t) : linear(key(i), key(i + 1), t);
 }
 
 std::vector<double> Track::key(size_t i, size_t part) const {

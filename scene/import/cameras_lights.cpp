@@ -9,12 +9,17 @@
 namespace vernier {
 namespace {
 
-CameraDescription read_camera(const Document& document, int index) {
+CameraDescription read_camera(const Document& document, int index, std::vector<Notice>& notices) {
   const auto& source = document.model().cameras[size_t(index)];
   CameraDescription camera;
   camera.name = source.name;
   if (source.type == "perspective") {
-    camera.yfov = float(source.perspective.yfov);
+    constexpr double widest = 3.1;  // radians
+    if (source.perspective.yfov > widest)
+      notices.push_back({Notice::Severity::warning, fmt::format("/cameras/{}/perspective/yfov", index),
+                         fmt::format("{:g} radians are more than a plane picture can show; {} are taken",
+                                     source.perspective.yfov, widest)});
+    camera.yfov = float(std::min(source.perspective.yfov, widest));
     camera.aspect = float(source.perspective.aspectRatio);
     return camera;
   }
@@ -133,7 +138,7 @@ void add_cameras_and_lights(const Document& document, const NodePlaces& places, 
     const auto use = node.extensions.find("KHR_lights_punctual");
     if (node.camera >= 0 || use != node.extensions.end()) check_affine(document, to_world, place);
     if (node.camera >= 0) {
-      CameraDescription camera = read_camera(document, node.camera);
+      CameraDescription camera = read_camera(document, node.camera, scene.notices);
       if (camera.name.empty()) camera.name = node.name;
       if (const auto frame = frame_of(to_world, true))
         camera.to_world = *frame;

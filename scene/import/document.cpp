@@ -102,7 +102,9 @@ void Document::read_buffers(const json& root, std::span<const uint8_t> binary_ch
       bytes = storage_.back().span();
       fingerprints_.push_back(fingerprint(bytes));
     } else if (bytes.empty()) {
-      fail(place, "the buffer has no uri and the file has no binary chunk for it");
+      // Nothing may use it, and only then it does no harm: see view().
+      buffers_.emplace_back();
+      continue;
     }
     const size_t length = buffer["byteLength"];
     if (length > bytes.size())
@@ -133,6 +135,25 @@ void Document::complete_spot_lights(json& root) {
   }
 }
 
+void Document::normalize_colors(json& root) {
+  if (!root.contains("meshes") || !root.contains("accessors")) return;
+  size_t mended = 0;
+  for (const auto& mesh : root["meshes"])
+    for (const auto& primitive : mesh["primitives"]) {
+      if (!primitive["attributes"].contains("COLOR_0")) continue;
+      json& accessor = root["accessors"][primitive["attributes"]["COLOR_0"].get<size_t>()];
+      constexpr int float_type = 5126;
+      if (accessor["componentType"] == float_type || accessor.value("normalized", false)) continue;
+      accessor["normalized"] = true;
+      ++mended;
+    }
+  if (mended)
+    notices_.push_back({Notice::Severity::warning, "/accessors",
+                        fmt::format("{} accessors of COLOR_0 hold integers that are not said to be "
+                                    "normalized; they are taken for that",
+                                    mended)});
+}
+
 void Document::parse_model(json& root) {
   root.erase("buffers");
   root.erase("images");
@@ -143,6 +164,8 @@ void Document::parse_model(json& root) {
       accessor.erase("max");
     }
   complete_spot_lights(root);
+  normalize_colors(root);
+  prepare_pointers(root);
   // tinygltf refuses indices whose accessor has no buffer view, as compressed and sparse ones have not. They
   // get one that does not exist, and it is taken away again below.
   const int no_view = root.contains("bufferViews") ? int(root["bufferViews"].size()) : 0;
@@ -153,17 +176,52 @@ void Document::parse_model(json& root) {
 
   const std::string text = root.dump(-1, ' ', false, json::error_handler_t::replace);
   root = json();
+  parse_text(text, model_);
+  model_.bufferViews.pop_back();
+  for (auto& accessor : model_.accessors)
+    if (accessor.bufferView == no_view) accessor.bufferView = -1;
+}
+
+void Document::parse_text(const std::string& text, tinygltf::Model& model) const {
   if (text.size() > std::numeric_limits<unsigned>::max()) fail("", "more than 4 GiB of JSON");
   tinygltf::TinyGLTF parser;
   std::string errors, warnings;
-  if (!parser.LoadASCIIFromString(&model_, &errors, &warnings, text.data(), unsigned(text.size()), "",
+  if (!parser.LoadASCIIFromString(&model, &errors, &warnings, text.data(), unsigned(text.size()), "",
                                   tinygltf::NO_REQUIRE)) {
     std::replace(errors.begin(), errors.end(), '\n', ' ');
     fail("", "not a valid glTF file: " + errors);
   }
-  model_.bufferViews.pop_back();
-  for (auto& accessor : model_.accessors)
-    if (accessor.bufferView == no_view) accessor.bufferView = -1;
+}
+
+void Document::prepare_pointers(json& root) {
+  if (!root.contains("animations")) return;
+  bool pointers = false;
+  for (auto& animation : root["animations"])
+    for (auto& channel : animation["channels"]) {
+      json& target = channel["target"];
+      pointers = pointers || target["path"] == "pointer";
+      if (!target.contains("node")) target["node"] = -1;
+    }
+  if (!pointers) return;
+  json parts = {{"asset", {{"version", "2.0"}}}};
+  for (const char* part : {"materials", "cameras", "extensions"})
+    if (root.contains(part)) parts[part] = root[part];
+  animatable_ = std::make_shared<const json>(std::move(parts));
+}
+
+void Document::set_properties(std::span<const PropertyValue> values) {
+  if (!animatable_) return;
+  json parts = *animatable_;
+  for (const auto& [pointer, value] : values) {
+    json& property = parts[json::json_pointer(pointer)];
+    property = value.size() == 1 ? json(value[0]) : json(value);
+  }
+  tinygltf::Model changed;
+  parse_text(parts.dump(-1, ' ', false, json::error_handler_t::replace), changed);
+  model_.materials = std::move(changed.materials);
+  model_.cameras = std::move(changed.cameras);
+  model_.lights = std::move(changed.lights);
+  model_.extensions = std::move(changed.extensions);
 }
 
 std::span<const uint8_t> Document::locate(int buffer, size_t offset, size_t length,
@@ -173,6 +231,14 @@ std::span<const uint8_t> Document::locate(int buffer, size_t offset, size_t leng
     fail(place, fmt::format("{} bytes from byte {} on are not in buffer {}, which has {}", length, offset,
                             buffer, bytes.size()));
   return bytes.subspan(offset, length);
+}
+
+std::span<const uint8_t> Document::view(int index) const {
+  const auto bytes = views_[size_t(index)];
+  if (bytes.empty())
+    fail(fmt::format("/buffers/{}", model_.bufferViews[size_t(index)].buffer),
+         "the buffer has no uri and the file has no binary chunk for it");
+  return bytes;
 }
 
 void Document::locate_views() {
@@ -188,6 +254,7 @@ void Document::locate_views() {
       views_[i] = decoded[i].span();
       return;
     }
+    if (buffers_[size_t(views[i].buffer)].empty()) return;
     views_[i] = locate(views[i].buffer, views[i].byteOffset, views[i].byteLength, place);
   });
   for (auto& bytes : decoded)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
@@ -20,6 +21,12 @@ struct ImageSource {
   int view = -1;
 };
 
+/// A number, or an array of them, that an animation sets.
+struct PropertyValue {
+  std::string pointer;  ///< JSON pointer of the property
+  std::vector<double> value;
+};
+
 /// A glTF file, parsed and checked against the schema: every type is right, every index in range. tinygltf is
 /// given the JSON without buffers and images, and so never opens a file itself: `model.buffers` and
 /// `model.images` are empty.
@@ -32,8 +39,14 @@ class Document {
   const tinygltf::Model& model() const { return model_; }
   const std::vector<ImageSource>& images() const { return images_; }
 
-  /// Bytes of a buffer view, decompressed.
-  std::span<const uint8_t> view(int index) const { return views_[size_t(index)]; }
+  /// What KHR_animation_pointer may change beyond nodes and meshes: the file's materials, cameras and
+  /// extensions at rest. Null where no animation uses it.
+  const nlohmann::json* animatable() const { return animatable_.get(); }
+  /// Changes the model: these properties of animatable() have these values, all others are at rest.
+  void set_properties(std::span<const PropertyValue> values);
+
+  /// Bytes of a buffer view, decompressed. Throws Error(input) when its buffer has no data.
+  std::span<const uint8_t> view(int index) const;
 
   /// Fingerprints of the scene file and the buffers read, in order.
   const std::vector<std::string>& fingerprints() const { return fingerprints_; }
@@ -48,8 +61,14 @@ class Document {
   void read_buffers(const nlohmann::json& json, std::span<const uint8_t> binary_chunk);
   void read_image_sources(const nlohmann::json& json);
   void parse_model(nlohmann::json& json);
+  void parse_text(const std::string& text, tinygltf::Model& model) const;
   /// Gives spot lights without a cone, which tinygltf refuses, the default one.
   void complete_spot_lights(nlohmann::json& root);
+  /// Colours in integers are fractions of the largest, said or not (glTF 2.0, 3.7.2.1).
+  void normalize_colors(nlohmann::json& root);
+  /// Keeps what set_properties() changes, and gives channels without a node, which tinygltf drops, one that
+  /// does not exist.
+  void prepare_pointers(nlohmann::json& root);
   void locate_views();
   /// The bytes that a buffer view's meshopt extension stands for.
   Bytes decompress(const tinygltf::Value& meshopt, const std::string& place) const;
@@ -57,6 +76,7 @@ class Document {
 
   AssetFiles files_;
   tinygltf::Model model_;
+  std::shared_ptr<const nlohmann::json> animatable_;
   std::vector<Bytes> storage_;
   std::vector<std::span<const uint8_t>> buffers_, views_;
   std::vector<ImageSource> images_;

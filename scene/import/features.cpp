@@ -28,6 +28,8 @@ constexpr ExtensionEntry extensions[] = {
     {"EXT_mesh_gpu_instancing", Status::exact, ""},
     {"EXT_meshopt_compression", Status::exact, ""},
     {"EXT_texture_webp", Status::exact, ""},
+    {"KHR_animation_pointer", Status::exact,
+     "numbers of materials and their textures, lights, cameras, nodes and morph weights; visibility"},
     {"KHR_draco_mesh_compression", Status::exact, ""},
     {"KHR_lights_punctual", Status::exact, "candela and lux are taken as W/sr and W/m^2"},
     {"KHR_materials_anisotropy", Status::exact, ""},
@@ -62,7 +64,6 @@ constexpr ExtensionEntry extensions[] = {
     {"KHR_texture_transform", Status::exact, ""},
     {"KHR_xmp_json_ld", Status::exact, "metadata, nothing to render"},
 
-    {"KHR_animation_pointer", Status::ignored, "only nodes and morph weights are animated"},
     {"MSFT_lod", Status::ignored, "the most detailed level is rendered"},
 };
 
@@ -82,6 +83,13 @@ bool uses_morph_targets(const tinygltf::Model& model) {
   for (const auto& mesh : model.meshes)
     for (const auto& primitive : mesh.primitives)
       if (!primitive.targets.empty()) return true;
+  return false;
+}
+
+bool uses_thin_primitives(const tinygltf::Model& model) {
+  for (const auto& mesh : model.meshes)
+    for (const auto& primitive : mesh.primitives)
+      if (primitive.mode < TINYGLTF_MODE_TRIANGLES) return true;
   return false;
 }
 
@@ -106,6 +114,11 @@ constexpr CoreEntry core_features[] = {
      "light transport computes occlusion itself (glTF 2.0, 3.9.3)", uses_occlusion},
     {"mesh.primitive.attributes COLOR_1 and up", Status::exact,
      "only COLOR_0 multiplies the base colour (glTF 2.0, 3.9.2); the others mean nothing", uses_more_colors},
+    {"mesh.primitive.mode POINTS and LINES", Status::approximated,
+     "they are solids in the scene, as thin as a pixel or a few when all of them fill the picture, not a "
+     "pixel "
+     "wide from anywhere; those without normals are not lit",
+     uses_thin_primitives},
     {"mesh.primitive.targets", Status::exact, "morphed by the weights at that time", uses_morph_targets},
     {"sampler.minFilter mipmaps", Status::exact, "the samples of a pixel average the texels they meet",
      uses_mipmaps},
@@ -123,6 +136,15 @@ FeatureUse extension_use(const std::string& name) {
   for (const auto& entry : extensions)
     if (entry.name == name) return {name, entry.status, std::string(entry.note)};
   return {name, Status::ignored, "this extension is not known"};
+}
+
+std::vector<FeatureUse> known_extensions() {
+  std::vector<FeatureUse> known;
+  for (const auto& [name, status, note] : extensions)
+    known.push_back({std::string(name), status, std::string(note)});
+  std::sort(known.begin(), known.end(),
+            [](const FeatureUse& a, const FeatureUse& b) { return a.name < b.name; });
+  return known;
 }
 
 std::vector<FeatureUse> report_features(const tinygltf::Model& model) {

@@ -15,6 +15,9 @@ namespace vernier {
 /// How an extension is honoured.
 FeatureUse extension_use(const std::string& name);
 
+/// How each extension that is known is honoured, by name.
+std::vector<FeatureUse> known_extensions();
+
 /// How each extension that the file uses, and each core feature worth a word, is honoured.
 std::vector<FeatureUse> report_features(const tinygltf::Model& model);
 

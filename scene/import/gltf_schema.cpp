@@ -220,7 +220,7 @@ struct GltfSchema {
       {{"primitives", array(object(primitive), 1), required}, {"weights", array(number())}, {"name", text()}},
       {}};
 
-  const ObjectSchema perspective{{{"yfov", number(1e-6, 3.1415), required},
+  const ObjectSchema perspective{{{"yfov", number(1e-6), required},
                                   {"aspectRatio", number(1e-6)},
                                   {"znear", number(0), required},
                                   {"zfar", number(0)}},
@@ -285,7 +285,11 @@ struct GltfSchema {
                            {"name", text()}},
                           {}};
 
-  const ObjectSchema channel_target{{{"node", index_into("/nodes")}, {"path", text(), required}}, {}};
+  const ObjectSchema animation_pointer{{{"pointer", text(), required}}, {}};
+  const ObjectSchema target_extensions{{{"KHR_animation_pointer", object(animation_pointer)}}, {}};
+  const ObjectSchema channel_target{
+      {{"node", index_into("/nodes")}, {"path", text(), required}, {"extensions", object(target_extensions)}},
+      {}};
   const ObjectSchema channel{
       {{"sampler", integer(0, max_int), required}, {"target", object(channel_target), required}}, {}};
   const ObjectSchema animation_sampler{{{"input", accessor_index, required},

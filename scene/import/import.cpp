@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "core/base/fingerprint.h"
 #include "core/base/parallel.h"
+#include "scene/import/animated_property.h"
 #include "scene/import/cameras_lights.h"
 #include "scene/import/features.h"
 #include "scene/import/image_light.h"
@@ -15,6 +17,7 @@
 #include "scene/import/meshes.h"
 #include "scene/import/nodes.h"
 #include "scene/import/textures.h"
+#include "scene/import/thin_bodies.h"
 
 namespace vernier {
 namespace {
@@ -82,23 +85,30 @@ void add_textures(const Document& document, const std::vector<RoughnessFromGloss
   }
 }
 
-/// Throws Error(input) when something lies so far out that areas and volumes overflow single precision, which
-/// bounding volume hierarchies compute in.
-void check_extents(const Document& document, const SceneDescription& scene) {
+/// Leaves out, with a warning, what lies so far out that areas and volumes overflow single precision, which
+/// bounding volume hierarchies compute in. `names`: of nodes that were left out before.
+void leave_out_far(std::vector<std::string> names, SceneDescription& scene) {
   constexpr float farthest = 1e18f;
   std::vector<Vec3f> reach(scene.meshes.size(), Vec3f(0, 0, 0));
   parallel_for(reach.size(), [&](size_t i) {
     for (const Vec3f& p : scene.meshes[i].positions) reach[i] = max(reach[i], abs(p));
   });
-  for (const auto& instance : scene.instances) {
+  const auto is_far = [&](const InstanceDescription& instance) {
     const Vec3f& own = reach[instance.mesh];
     const Vec3f placed = instance.to_world.absolute_point(own, 1);
-    if (max_component(own) <= farthest && max_component(placed) <= farthest) continue;
-    document.fail("/nodes",
-                  fmt::format("the mesh of node '{}' reaches farther than {:g} m from the origin, which is "
-                              "too large for single precision; scale the scene down",
-                              instance.name, farthest));
-  }
+    return !(max_component(own) <= farthest && max_component(placed) <= farthest);
+  };
+  for (const auto& instance : scene.instances)
+    if (is_far(instance)) names.push_back(instance.name);
+  if (names.empty()) return;
+  scene.instances.erase(std::remove_if(scene.instances.begin(), scene.instances.end(), is_far),
+                        scene.instances.end());
+  const std::string more = names.size() > 1 ? fmt::format(" and {} more", names.size() - 1) : "";
+  scene.notices.push_back(
+      {Notice::Severity::warning, "/nodes",
+       fmt::format("the mesh of node '{}'{} reaches farther than {:g} m from the origin, which "
+                   "is too large for single precision, and is left out; scale the scene down",
+                   names[0], more, farthest)});
 }
 
 /// Throws Error(input) about the first thing that is not rendered exactly as the file says.
@@ -121,7 +131,9 @@ class SceneFile::Content {
   explicit Content(AssetFiles files)
       : document_(std::move(files)),
         features_(report_features(document_.model())),
-        materials_(read_materials(document_, material_notices_)) {}
+        materials_(read_materials(document_, material_notices_)) {
+    note_unknown_pointers(document_, features_);
+  }
 
   const Document& document() const { return document_; }
 
@@ -130,6 +142,8 @@ class SceneFile::Content {
 
  private:
   void add_shapes(const ImportOptions& options, bool keep, SceneDescription& scene);
+  /// Reads anew what animations change beyond nodes, if they do or did so.
+  void set_properties(std::span<const PropertyValue> values);
   void add_environment(SceneDescription& scene, std::vector<std::string>& fingerprints);
 
   struct ImageLight {
@@ -145,6 +159,7 @@ class SceneFile::Content {
   ImageCache images_;
   MeshCache meshes_;
   std::optional<ImageLight> image_light_;  ///< none: not read yet
+  bool at_rest_ = true;                    ///< materials and lights are those of the file
 };
 
 SceneDescription SceneFile::Content::describe(const ImportOptions& options, bool keep) {
@@ -156,7 +171,6 @@ SceneDescription SceneFile::Content::describe(const ImportOptions& options, bool
   add_shapes(options, keep, scene);
 
   std::vector<std::string> fingerprints = document_.fingerprints();
-  keep_used_materials(materials_.materials, scene);
   add_textures(document_, materials_.derived, images_, scene, fingerprints);
   add_environment(scene, fingerprints);
   scene.hash = combined_fingerprint(fingerprints);
@@ -171,8 +185,10 @@ SceneDescription SceneFile::Content::describe(const ImportOptions& options, bool
 
 void SceneFile::Content::add_shapes(const ImportOptions& options, bool keep, SceneDescription& scene) {
   std::vector<NodePose> poses = rest_pose(document_, scene.notices);
+  std::vector<PropertyValue> values;
   if (options.time || !options.animation.empty())
-    pose_by_animations(document_, options.animation, options.time.value_or(0), poses, scene.notices);
+    pose_by_animations(document_, options.animation, options.time.value_or(0), poses, values, scene.notices);
+  set_properties(values);
   const NodePlaces places = place_nodes(document_, poses);
   add_cameras_and_lights(document_, places, scene);
 
@@ -181,16 +197,31 @@ void SceneFile::Content::add_shapes(const ImportOptions& options, bool keep, Sce
   for (const int node : places.shown) placer.add_node(node, places, poses[size_t(node)]);
   Placement placement = placer.take();
   scene.instances = std::move(placement.instances);
-  if (placement.without_surface)
+  if (placement.empty)
     scene.notices.push_back(
         {Notice::Severity::warning, "/meshes",
-         fmt::format("{} primitives have no surface (points, lines or no positions) and are left out",
-                     placement.without_surface)});
+         fmt::format("{} primitives have no positions, or too few for a line or triangle, and are left out",
+                     placement.empty)});
   MeshRepairs repairs;
   scene.meshes =
       read_meshes(document_, placement.meshes, places.to_world, repairs, keep ? &meshes_ : nullptr);
   append(repairs.notices(), scene.notices);
-  check_extents(document_, scene);
+  leave_out_far(std::move(placement.too_far), scene);
+  add_thin_bodies(document_, placement.meshes, scene);
+
+  std::vector<ImportedMaterial> materials = materials_.materials;
+  append(placement.thin_materials, materials);
+  keep_used_materials(materials, scene);
+}
+
+void SceneFile::Content::set_properties(std::span<const PropertyValue> values) {
+  if (values.empty() && at_rest_) return;
+  at_rest_ = values.empty();
+  document_.set_properties(values);
+  material_notices_.clear();
+  materials_ = read_materials(document_, material_notices_);
+  images_.roughness.clear();
+  image_light_.reset();
 }
 
 void SceneFile::Content::add_environment(SceneDescription& scene, std::vector<std::string>& fingerprints) {
@@ -222,8 +253,11 @@ std::vector<AnimationSpan> SceneFile::animations() const {
   for (const auto& animation : model.animations) {
     AnimationSpan& span = spans.emplace_back(AnimationSpan{animation.name});
     for (const auto& sampler : animation.samplers) {
-      const auto& latest = model.accessors[size_t(sampler.input)].maxValues;  // which glTF demands here
-      if (!latest.empty()) span.seconds = std::max(span.seconds, latest[0]);
+      try {
+        span.seconds = std::max(span.seconds, latest_key(content_->document(), sampler));
+      } catch (const Error&) {
+        // What is wrong with it is said when it is asked for.
+      }
     }
   }
   return spans;

@@ -7,7 +7,7 @@
 
 #include "core/base/names.h"
 #include "scene/import/accessors.h"
-#include "scene/import/primitive_data.h"
+#include "scene/import/thin_bodies.h"
 
 namespace vernier {
 namespace {
@@ -82,8 +82,9 @@ void InstancePlacer::add_node(int index, const NodePlaces& places, const NodePos
   const auto& mesh = document_.model().meshes[size_t(node.mesh)];
   for (size_t i = 0; i < mesh.primitives.size(); ++i) {
     const auto& primitive = mesh.primitives[i];
-    if (!has_surface(document_, primitive)) {
-      ++result_.without_surface;
+    const Topology topology = topology_of(document_, primitive);
+    if (topology == Topology::none) {
+      ++result_.empty;
       continue;
     }
     MeshUse use{node.mesh, int(i), node.skin, {}};
@@ -91,7 +92,9 @@ void InstancePlacer::add_node(int index, const NodePlaces& places, const NodePos
     InstanceDescription instance;
     instance.name = node.name;
     instance.material = material_of(primitive);
-    instance.mesh = mesh_of(std::move(use), instance.material);
+    if (topology != Topology::triangles)
+      instance.material = thin_material_of(instance.material, primitive.attributes.count("NORMAL") > 0);
+    instance.mesh = mesh_of(std::move(use), topology, instance.material);
     instance.object = first_object_;
     instance.asset = document_.model().nodes[size_t(places.top[size_t(index)])].name;
     // A skinned mesh is where its joints are; its own node does not count (glTF 2.0, 3.7.3.3).
@@ -112,8 +115,13 @@ void InstancePlacer::add_instances(int node, const InstanceDescription& prototyp
           ? std::vector<M44d>{M44d()}
           : instance_matrices(document_, node, instancing->second.Get("attributes"));
   for (uint32_t i = 0; i < matrices.size(); ++i) {
+    const auto transform = to_transform(document_, matrices[i] * to_world, place);
+    if (!transform) {
+      result_.too_far.push_back(prototype.name);
+      continue;
+    }
     result_.instances.push_back(prototype);
-    result_.instances.back().to_world = to_transform(document_, matrices[i] * to_world, place);
+    result_.instances.back().to_world = *transform;
     result_.instances.back().object = first_object_ + i;
   }
 }
@@ -132,12 +140,27 @@ uint32_t InstancePlacer::material_of(const tinygltf::Primitive& primitive) const
   return primitive.material >= 0 ? uint32_t(primitive.material) : uint32_t(materials_.size() - 1);
 }
 
-uint32_t InstancePlacer::mesh_of(MeshUse use, uint32_t material) {
+uint32_t InstancePlacer::thin_material_of(uint32_t material, bool lit) {
+  const uint32_t next = uint32_t(materials_.size() + result_.thin_materials.size());
+  const auto [found, is_new] = thin_materials_.try_emplace({material, lit}, next);
+  if (is_new) {
+    result_.thin_materials.push_back(materials_[material]);
+    make_thin(result_.thin_materials.back().description, lit);
+  }
+  return found->second;
+}
+
+const ImportedMaterial& InstancePlacer::material_at(uint32_t index) const {
+  return index < materials_.size() ? materials_[index] : result_.thin_materials[index - materials_.size()];
+}
+
+uint32_t InstancePlacer::mesh_of(MeshUse use, Topology topology, uint32_t material) {
   const auto [found, is_new] = meshes_.try_emplace(use, uint32_t(result_.meshes.size()));
   if (!is_new) return found->second;
   MeshRequest request;
   request.use = std::move(use);
-  const ImportedMaterial& reader = materials_[material];
+  request.topology = topology;
+  const ImportedMaterial& reader = material_at(material);
   request.tangent_map = tangent_map(reader.description);
   const auto want = [&](const TextureUse& texture) {
     const size_t slot = size_t(texture.texcoord);

@@ -16,12 +16,14 @@ namespace vernier {
 /// Names of the file's variants (KHR_materials_variants), in its order.
 std::vector<std::string> variant_names(const Document& document);
 
-/// What of the scene has a surface. Instances refer to `meshes` and, by the file's own numbering, to
-/// materials.
+/// What of the scene there is to see. Instances refer to `meshes` and, by the file's own numbering, to
+/// materials, or, beyond those, to `thin_materials`.
 struct Placement {
   std::vector<InstanceDescription> instances;
   std::vector<MeshRequest> meshes;  ///< each shape once, however many nodes use it
-  size_t without_surface = 0;       ///< primitives left out: points, lines, no positions
+  std::vector<ImportedMaterial> thin_materials;
+  std::vector<std::string> too_far;  ///< names of nodes whose places do not fit in floats, left out
+  size_t empty = 0;                  ///< primitives left out: without positions, or with too few
 };
 
 /// Makes one instance per node and primitive, times EXT_mesh_gpu_instancing. Throws Error(input).
@@ -38,12 +40,16 @@ class InstancePlacer {
  private:
   void add_instances(int node, const InstanceDescription& prototype, const Imath::M44d& to_world);
   uint32_t material_of(const tinygltf::Primitive& primitive) const;
-  uint32_t mesh_of(MeshUse use, uint32_t material);
+  /// The material for points and lines, which are shown from all sides, and only lit if they have normals.
+  uint32_t thin_material_of(uint32_t material, bool lit);
+  const ImportedMaterial& material_at(uint32_t index) const;
+  uint32_t mesh_of(MeshUse use, Topology topology, uint32_t material);
 
   const Document& document_;
   const std::vector<ImportedMaterial>& materials_;
   int variant_ = -1;
   std::map<MeshUse, uint32_t> meshes_;
+  std::map<std::pair<uint32_t, bool>, uint32_t> thin_materials_;  ///< of a material and whether it is lit
   Placement result_;
   uint32_t first_object_ = 0;  ///< number of the next object to be placed
 };

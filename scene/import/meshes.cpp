@@ -7,7 +7,6 @@
 
 #include "scene/import/deform.h"
 #include "scene/import/ordered_parallel.h"
-#include "scene/import/primitive_data.h"
 #include "scene/import/tangents.h"
 #include "scene/import/vertex_arrays.h"
 
@@ -114,7 +113,7 @@ MeshDescription read_mesh(const Document& document, const MeshRequest& request,
   mesh.name = document.model().meshes[size_t(use.mesh)].name;
   mesh.positions = data.read<Vec3f>("POSITION");
   check_positions(data, mesh.positions);
-  mesh.triangles = data.read_triangles();
+  mesh.triangles = request.topology == Topology::triangles ? data.read_triangles() : data.read_thin();
   if (data.has("NORMAL")) {
     mesh.normals = data.read<Vec3f>("NORMAL");
     repair_normals(mesh, repairs);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "scene/import/document.h"
+#include "scene/import/primitive_data.h"
 #include "vernier/scene.h"
 
 namespace vernier {
@@ -27,6 +28,7 @@ struct MeshUse {
 
 struct MeshRequest {
   MeshUse use;
+  Topology topology = Topology::triangles;
   std::array<int, 2> texcoords{-1, -1};   ///< n of the TEXCOORD_n to read as sets 0 and 1; -1: none
   std::optional<TextureUse> tangent_map;  ///< the texture whose axes tangents follow; none: they are not read
 };
@@ -57,9 +59,9 @@ class MeshCache {
   std::map<MeshUse, std::shared_ptr<Entry>> entries_;
 };
 
-/// Reads the meshes asked for, in parallel; `node_to_world` places the joints of skins. With a cache, copies
-/// what it has and leaves what it may need next time. Throws Error(input) about the first mesh that cannot be
-/// used.
+/// Reads the meshes asked for, in parallel; points and lines have no body yet (thin_bodies.h).
+/// `node_to_world` places the joints of skins. With a cache, copies what it has and leaves what it may need
+/// next time. Throws Error(input) about the first mesh that cannot be used.
 std::vector<MeshDescription> read_meshes(const Document& document, const std::vector<MeshRequest>& requests,
                                          const std::vector<Imath::M44d>& node_to_world, MeshRepairs& repairs,
                                          MeshCache* cache);

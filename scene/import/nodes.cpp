@@ -50,13 +50,6 @@ std::vector<int> scene_roots(const Document& document, const std::vector<int>& p
   return roots;
 }
 
-/// KHR_node_visibility: hides the node and what is below it.
-bool is_hidden(const tinygltf::Node& node) {
-  const auto visibility = node.extensions.find("KHR_node_visibility");
-  if (visibility == node.extensions.end() || !visibility->second.Has("visible")) return false;
-  return !visibility->second.Get("visible").Get<bool>();
-}
-
 }  // namespace
 
 NodePlaces place_nodes(const Document& document, const std::vector<NodePose>& poses) {
@@ -90,7 +83,7 @@ NodePlaces place_nodes(const Document& document, const std::vector<NodePose>& po
   while (!pending.empty()) {
     const int node = pending.back();
     pending.pop_back();
-    if (is_hidden(nodes[size_t(node)])) continue;
+    if (!poses[size_t(node)].visible) continue;
     places.shown.push_back(node);
     const auto& children = nodes[size_t(node)].children;
     pending.insert(pending.end(), children.rbegin(), children.rend());
@@ -104,14 +97,13 @@ void check_affine(const Document& document, const M44d& m, const std::string& pl
       document.fail(place, "the transform is not affine: the last row of its matrix must be 0 0 0 1");
 }
 
-Transform to_transform(const Document& document, const M44d& m, const std::string& place) {
+std::optional<Transform> to_transform(const Document& document, const M44d& m, const std::string& place) {
   check_affine(document, m, place);
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 3; ++column)
-      if (!std::isfinite(float(m[row][column])))
-        document.fail(place, "the transform is too large for single precision");
+      if (!(std::abs(m[row][column]) <= double(std::numeric_limits<float>::max()))) return std::nullopt;
   const auto row = [&](int i) { return Vec3f(Vec3d(m[i][0], m[i][1], m[i][2])); };
-  return {row(0), row(1), row(2), row(3)};
+  return Transform{row(0), row(1), row(2), row(3)};
 }
 
 }  // namespace vernier

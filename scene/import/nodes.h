@@ -3,6 +3,7 @@
 
 #include <ImathMatrix.h>
 
+#include <optional>
 #include <vector>
 
 #include "scene/import/document.h"
@@ -25,7 +26,8 @@ NodePlaces place_nodes(const Document& document, const std::vector<NodePose>& po
 /// Throws Error(input) about `place` when the matrix is not affine.
 void check_affine(const Document& document, const Imath::M44d& matrix, const std::string& place);
 
-/// Throws Error(input) about `place` when the matrix does not fit in floats or is not affine.
-Transform to_transform(const Document& document, const Imath::M44d& matrix, const std::string& place);
+/// None when the matrix does not fit in floats. Throws Error(input) about `place` when it is not affine.
+std::optional<Transform> to_transform(const Document& document, const Imath::M44d& matrix,
+                                      const std::string& place);
 
 }  // namespace vernier

@@ -6,6 +6,15 @@
 #include <cmath>
 
 namespace vernier {
+namespace {
+
+bool is_visible(const tinygltf::Node& node) {
+  const auto visibility = node.extensions.find("KHR_node_visibility");
+  if (visibility == node.extensions.end() || !visibility->second.Has("visible")) return true;
+  return visibility->second.Get("visible").Get<bool>();
+}
+
+}  // namespace
 
 Imath::M44d NodePose::to_parent() const {
   if (matrix) return *matrix;
@@ -38,6 +47,7 @@ std::vector<NodePose> rest_pose(const Document& document, std::vector<Notice>& n
       if (node.scale.size() == 3) pose.scale[i] = node.scale[size_t(i)];
     }
     pose.weights = node.weights;
+    pose.visible = is_visible(node);
   }
   if (scaled)
     notices.push_back({Notice::Severity::warning, "/nodes",

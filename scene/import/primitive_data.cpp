@@ -34,10 +34,12 @@ Triangle connected_triangle(int mode, const std::vector<uint32_t>& indices, size
 
 }  // namespace
 
-bool has_surface(const Document& document, const tinygltf::Primitive& primitive) {
-  const bool triangles =
-      primitive.mode >= TINYGLTF_MODE_TRIANGLES && primitive.mode <= TINYGLTF_MODE_TRIANGLE_FAN;
-  return triangles && primitive.attributes.count("POSITION") && index_count(document, primitive) >= 3;
+Topology topology_of(const Document& document, const tinygltf::Primitive& primitive) {
+  if (!primitive.attributes.count("POSITION")) return Topology::none;
+  const size_t count = index_count(document, primitive);
+  if (primitive.mode == TINYGLTF_MODE_POINTS) return Topology::points;
+  if (primitive.mode < TINYGLTF_MODE_TRIANGLES) return count >= 2 ? Topology::lines : Topology::none;
+  return count >= 3 ? Topology::triangles : Topology::none;
 }
 
 PrimitiveData::PrimitiveData(const Document& document, int mesh, int primitive)
@@ -118,6 +120,22 @@ std::vector<Triangle> PrimitiveData::read_triangles() const {
     triangles[i] = list ? Triangle{indices[3 * i], indices[3 * i + 1], indices[3 * i + 2]}
                         : connected_triangle(primitive_.mode, indices, i);
   return triangles;
+}
+
+std::vector<Triangle> PrimitiveData::read_thin() const {
+  const std::vector<uint32_t> indices = drawn_indices();
+  check_indices(indices.data(), indices.size());
+  std::vector<Triangle> elements;
+  elements.reserve(indices.size());
+  const auto add_line = [&](uint32_t a, uint32_t b) { elements.push_back({a, b, b}); };
+  if (primitive_.mode == TINYGLTF_MODE_POINTS)
+    for (const uint32_t i : indices) elements.push_back({i, i, i});
+  if (primitive_.mode == TINYGLTF_MODE_LINE)
+    for (size_t i = 1; i < indices.size(); i += 2) add_line(indices[i - 1], indices[i]);
+  if (primitive_.mode == TINYGLTF_MODE_LINE_STRIP || primitive_.mode == TINYGLTF_MODE_LINE_LOOP)
+    for (size_t i = 1; i < indices.size(); ++i) add_line(indices[i - 1], indices[i]);
+  if (primitive_.mode == TINYGLTF_MODE_LINE_LOOP) add_line(indices.back(), indices.front());
+  return elements;
 }
 
 std::vector<uint32_t> PrimitiveData::drawn_indices() const {

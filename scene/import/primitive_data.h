@@ -11,6 +11,12 @@
 
 namespace vernier {
 
+/// What a primitive is made of.
+enum class Topology { none, points, lines, triangles };
+
+/// None when it has no positions, or too few for one point, line or triangle.
+Topology topology_of(const Document& document, const tinygltf::Primitive& primitive);
+
 /// Attributes and triangles of one mesh primitive, however the file stores them.
 class PrimitiveData {
  public:
@@ -48,6 +54,8 @@ class PrimitiveData {
 
   /// Triangles of lists, strips and fans, counter-clockwise as the file winds them; every index is in range.
   std::vector<Triangle> read_triangles() const;
+  /// Points and lines as triangles without area, {a, a, a} and {a, b, b}; every index is in range.
+  std::vector<Triangle> read_thin() const;
 
   /// Throws Error(input) about this primitive; `place` is a JSON pointer below it.
   [[noreturn]] void fail(const std::string& place, const std::string& problem) const;
@@ -70,8 +78,5 @@ class PrimitiveData {
   std::string place_;
   std::optional<DracoData> draco_;
 };
-
-/// Whether the primitive has a surface: triangles, strips or fans of at least one triangle, with positions.
-bool has_surface(const Document& document, const tinygltf::Primitive& primitive);
 
 }  // namespace vernier

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string_view>
@@ -52,6 +53,13 @@ bool is_in_range(const json& number, const ValueRule& rule) {
   return number.get<double>() >= rule.lower && number.get<double>() <= rule.upper;
 }
 
+/// An empty list allows any value.
+template <typename Value, typename Listed>
+bool is_listed(const Value& value, const std::vector<Listed>& list) {
+  return list.empty() ||
+         std::any_of(list.begin(), list.end(), [&](const Listed& l) { return value == Value(l); });
+}
+
 /// Why a value stands for none where it may be left out; empty: it does not. Anything else that is wrong with
 /// it is an error.
 std::string reason_to_drop(const json& value, const ValueRule& rule) {
@@ -61,6 +69,11 @@ std::string reason_to_drop(const json& value, const ValueRule& rule) {
       if (item.is_null()) return "null is no number";
   if (rule.kind == Kind::number && value.is_number() && !is_in_range(value, rule))
     return fmt::format("{} is not a number{}", describe(value), range_text(rule));
+  // Extensions may add to enumerations.
+  if (rule.kind == Kind::text && value.is_string() && !is_listed(value.get<std::string>(), rule.names))
+    return fmt::format("{} is none of {}", describe(value), fmt::join(rule.names, ", "));
+  if (rule.kind == Kind::integer && value.is_number() && !is_listed(value.get<double>(), rule.values))
+    return fmt::format("{} is none of {}", describe(value), fmt::join(rule.values, ", "));
   return {};
 }
 
@@ -157,9 +170,7 @@ class Checker {
       value = uint64_t(value.get<int64_t>());
     if (!value.is_number_integer() || !is_in_range(value, rule))
       fail(place, "expected an integer" + range_text(rule), value);
-    if (rule.values.empty()) return;
-    for (const int allowed : rule.values)
-      if (value.get<double>() == allowed) return;
+    if (is_listed(value.get<double>(), rule.values)) return;
     fail(place, fmt::format("expected one of {}", fmt::join(rule.values, ", ")), value);
   }
 
@@ -179,9 +190,7 @@ class Checker {
 
   void check_text(const json& value, const ValueRule& rule, const Place& place) const {
     if (!value.is_string()) fail(place, "expected a string", value);
-    if (rule.names.empty()) return;
-    for (const auto& name : rule.names)
-      if (value.get_ref<const std::string&>() == name) return;
+    if (is_listed(value.get<std::string>(), rule.names)) return;
     fail(place, fmt::format("expected one of {}", fmt::join(rule.names, ", ")), value);
   }
 

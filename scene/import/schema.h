@@ -43,8 +43,9 @@ struct ObjectSchema {
 /// Three things are put right instead:
 /// - whole numbers written as 3.0 where an integer is expected become integers;
 /// - numbers beyond single precision become its largest ones;
-/// - an optional property that is null, which is how JavaScript writes numbers that are not finite, or a
-///   number outside its range, counts as absent, with a warning in `notices`.
+/// - an optional property that is null, which is how JavaScript writes numbers that are not finite, a number
+///   outside its range, or a value that is none of those there are, counts as absent, with a warning in
+///   `notices`.
 void check_against_schema(nlohmann::json& document, const ObjectSchema& schema, const std::string& file,
                           std::vector<Notice>& notices);
 

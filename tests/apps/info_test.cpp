@@ -44,6 +44,22 @@ TEST(Info, TextNamesEveryPart) {
     EXPECT_THAT(result.out, HasSubstr(text));
 }
 
+TEST(Info, ListsTheExtensionsThatAreKnown) {
+  const test::ProcessResult text = test::run_vernier({"info", "--extensions"});
+  ASSERT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("  EXT_mesh_gpu_instancing: exact\n"));
+  EXPECT_THAT(text.out, HasSubstr("  KHR_materials_dispersion: approximated, one index each"));
+  EXPECT_THAT(text.out, HasSubstr("  MSFT_lod: ignored, "));
+  const test::ProcessResult result = test::run_vernier({"info", "--extensions", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto list = nlohmann::json::parse(result.out);
+  EXPECT_GT(list.size(), 25u);
+  for (const auto& extension : list) {
+    EXPECT_THAT(text.out, HasSubstr(extension["name"].get<std::string>()));
+    EXPECT_TRUE(extension.contains("status") && extension.contains("note")) << extension;
+  }
+}
+
 TEST(Info, InstancesAreCountedOnceStored) {
   const test::TemporaryFolder folder;
   // Three points of floats as base64: (0,0,0), (1,0,0), (0,1,0).

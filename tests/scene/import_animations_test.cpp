@@ -71,7 +71,7 @@ TEST(ImportAnimations, ThatMoveTheSameThingAreTakenOneByOne) {
   const SceneDescription all = stage.at(1, "all");
   EXPECT_EQ(x_of(all, 0), 7.f) << "the last in the file's order";
   EXPECT_EQ(x_of(all, 1), 5.f);
-  EXPECT_TRUE(has_notice(all, "1 properties of nodes are set by more than one animation; the last"));
+  EXPECT_TRUE(has_notice(all, "1 properties are set by more than one animation; the last"));
 }
 
 TEST(ImportAnimations, OneThatIsCalledAllIsMeantByThat) {

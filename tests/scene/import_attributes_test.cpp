@@ -152,5 +152,15 @@ TEST(ImportAttributes, UnknownAttributesOfAnotherCountAreRefused) {
   EXPECT_THAT(import_error(file), testing::HasSubstr("values for"));
 }
 
+TEST(ImportAttributes, ColorsInIntegersAreNormalizedSaidOrNot) {
+  GltfFile file;
+  const std::vector<uint8_t> colors{255, 51, 0, 255, 255, 51, 0, 255, 255, 51, 0, 255};
+  file.add_mesh({{"POSITION", file.add_accessor(GltfFile::triangle_positions(), "VEC3")},
+                 {"COLOR_0", file.add_accessor(colors, "VEC4")}});
+  const SceneDescription scene = file.import();
+  EXPECT_EQ(scene.meshes.at(0).colors.at(0), Vec4f(1, 0.2f, 0, 1));
+  EXPECT_TRUE(has_notice(scene, "1 accessors of COLOR_0 hold integers that are not said to be normalized"));
+}
+
 }  // namespace
 }  // namespace vernier::test

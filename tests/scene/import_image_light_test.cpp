@@ -183,5 +183,28 @@ TEST(ImportImageLight, RefusesWhatIsMalformed) {
               HasSubstr("/images/2: the light's image cannot be read: "));
 }
 
+TEST(ImportImageLight, IsAnimatedByPointer) {
+  GltfFile file = lit_by_colors();
+  const auto animate = [&](const char* property, const std::vector<float>& value, const std::string& type) {
+    const json target = {
+        {"path", "pointer"},
+        {"extensions",
+         {{"KHR_animation_pointer",
+           {{"pointer", std::string("/extensions/EXT_lights_image_based/lights/0/") + property}}}}}};
+    const int input = file.add_accessor(std::vector<float>{0}, "SCALAR");
+    const int output = file.add_accessor(value, type);
+    file.add("animations", {{"channels", {{{"sampler", 0}, {"target", target}}}},
+                            {"samplers", {{{"input", input}, {"output", output}}}}});
+  };
+  animate("intensity", {5}, "SCALAR");
+  animate("rotation", {0, 1, 0, 0}, "VEC4");
+  ImportOptions options;
+  options.time = 0;
+  const SceneDescription scene = file.import(options);
+  EXPECT_EQ(scene.environment->scale, 5.f);
+  const EnvironmentLight turned(scene.environment);
+  expect_radiance(turned, {1, -0.5f, 0.5f}, Rgb(0, 5, 0));
+}
+
 }  // namespace
 }  // namespace vernier::test

@@ -120,6 +120,33 @@ TEST(ImportLenient, OptionalNumbersOutOfRangeCountAsAbsent) {
   EXPECT_EQ(with(light + "/color", {1, -2, 0.5}).lights.at(0).color, Rgb(1, 0, 0.5f));
 }
 
+TEST(ImportLenient, ValuesThatAreNoneOfThoseThereAreCountAsAbsent) {
+  const SceneDescription scene = with("/materials/0/alphaMode", "BLENDED");
+  EXPECT_EQ(scene.materials.at(0).alpha_mode, AlphaMode::opaque);
+  EXPECT_TRUE(
+      has_notice(scene, "\"BLENDED\" is none of OPAQUE, MASK, BLEND, so the property counts as absent"));
+  EXPECT_TRUE(has_notice(with("/samplers", {{{"wrapS", 7}}}), "7 is none of 10497, 33071, 33648"));
+}
+
+TEST(ImportLenient, AFieldOfViewBeyondAPlaneIsNarrowed) {
+  const SceneDescription scene = with("/cameras/0/perspective/yfov", 40);
+  EXPECT_LT(scene.cameras.at(0).yfov, 3.1415f);
+  EXPECT_TRUE(has_notice(scene, "40 radians are more than a plane picture can show"));
+}
+
+TEST(ImportLenient, ABufferWithoutDataMayBeThereIfNothingUsesIt) {
+  GltfFile file;
+  file.add_triangle();
+  const TemporaryFolder folder;
+  file.save(folder);
+  file.json["buffers"] = {{{"uri", "data.bin"}, {"byteLength", file.buffer.size()}}, {{"byteLength", 8}}};
+  file.add("bufferViews", {{"buffer", 1}, {"byteLength", 8}});
+  EXPECT_THAT(import_error(folder.write("unused.gltf", file.json.dump())), IsEmpty());
+  file.json["accessors"][0]["bufferView"] = 1;
+  EXPECT_THAT(import_error(folder.write("used.gltf", file.json.dump())),
+              HasSubstr("/buffers/1: the buffer has no uri and the file has no binary chunk for it"));
+}
+
 TEST(ImportLenient, NumbersBeyondSinglePrecisionBecomeItsLargest) {
   for (const char* text : {"3.4028235e38", "3.40282347e+38", "3.4028234663852886e38", "1e39", "1.8e308",
                            "1e400", "1E+999", "123456e9999"}) {

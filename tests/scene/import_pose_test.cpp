@@ -54,6 +54,17 @@ TEST(ImportPose, Steps) {
   expect_near(at(file, 1).point({1, 1, 1}), {2, 3, 4});
 }
 
+TEST(ImportPose, JumpsWhereKeysShareATime) {
+  const GltfFile file =
+      animated("translation", {0, 1, 1, 2}, {0, 0, 0, 1, 0, 0, 5, 0, 0, 6, 0, 0}, "VEC3", "LINEAR");
+  expect_near(at(file, 0.5).origin, {0.5, 0, 0});
+  expect_near(at(file, 1).origin, {5, 0, 0});
+  expect_near(at(file, 1.5).origin, {5.5, 0, 0});
+  ImportOptions options;
+  options.time = 0;
+  EXPECT_TRUE(has_notice(file.import(options), "keys share a time"));
+}
+
 TEST(ImportPose, TurnsAlongTheShorterArc) {
   const float s = std::sqrt(0.5f);
   // A quarter turn about z, its second key written as the opposite quaternion.
@@ -96,8 +107,8 @@ TEST(ImportPose, ChoosesAnimationsByNameOrIndex) {
 TEST(ImportPose, RejectsBadTracks) {
   ImportOptions options;
   options.time = 0;
-  EXPECT_THAT(import_error(animated("translation", {1, 1}, {0, 0, 0, 1, 1, 1}, "VEC3", "LINEAR"), options),
-              HasSubstr("/animations/0/samplers/0/input: time 1 does not increase"));
+  EXPECT_THAT(import_error(animated("translation", {1, 0.5}, {0, 0, 0, 1, 1, 1}, "VEC3", "LINEAR"), options),
+              HasSubstr("/animations/0/samplers/0/input: time 1 is not after the one before"));
   EXPECT_THAT(import_error(animated("translation", {0, 1}, {0, 0, 0}, "VEC3", "LINEAR"), options),
               HasSubstr("/animations/0/samplers/0/output"));
   EXPECT_THAT(import_error(animated("scale", {0}, {1, std::nanf(""), 1}, "VEC3", "LINEAR"), options),
