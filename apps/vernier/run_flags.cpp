@@ -50,6 +50,15 @@ void add_run_flags(CLI::App& command, RunFlags& flags) {
   command.option_defaults()->group(group);
 }
 
+void add_jobs_flag(CLI::App& command, RunFlags& flags) {
+  command
+      .add_option("--jobs", flags.jobs,
+                  "render what each line of this file says: scenes and flags, beside those given here; - is "
+                  "standard input (docs/sequences.md)")
+      ->type_name("FILE")
+      ->group("Many pictures");
+}
+
 void add_preview_flags(CLI::App& command, RunFlags& flags) {
   command.add_flag("--draft", flags.draft, "a look at it: --spp 8 --denoise nlm, unless others are given");
   command

@@ -12,6 +12,7 @@ namespace vernier::apps {
 /// Which pictures a run of `vernier render` makes, and how it goes about it, as typed.
 struct RunFlags {
   std::vector<std::string> scenes;
+  std::string jobs;           ///< a list of command lines, each a run of its own; empty: none
   std::string frames;         ///< empty: none
   std::optional<double> fps;  ///< none: 24
   std::optional<int> turntable;
@@ -22,6 +23,9 @@ struct RunFlags {
 
 /// Declares the flags on `command`, but for the scenes.
 void add_run_flags(CLI::App& command, RunFlags& flags);
+
+/// Declares --jobs.
+void add_jobs_flag(CLI::App& command, RunFlags& flags);
 
 /// Declares what is done soon: --draft, --write-every, --format.
 void add_preview_flags(CLI::App& command, RunFlags& flags);

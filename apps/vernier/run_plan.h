@@ -37,8 +37,12 @@ RunPlan make_plan(const RenderFlags& flags);
 RenderFlags flags_for(const RenderFlags& all, const RunPlan& plan, const std::string& scene,
                       const PictureName& picture);
 
+/// What the run reads, and what it writes, as far as names are known before the scenes are read.
+std::vector<std::string> files_read(const RenderFlags& flags, const RunPlan& plan);
+std::vector<std::string> files_written(const RenderFlags& flags, const RunPlan& plan);
+
 /// Throws Error when a file cannot be written, would be written over one that is read, or is not there to go
-/// on from; as far as names are known before the scenes are read.
+/// on from; as far as names are known.
 void check_files(const RenderFlags& flags, const RunPlan& plan);
 
 }  // namespace vernier::apps
