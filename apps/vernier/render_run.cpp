@@ -48,7 +48,8 @@ RenderRun::RenderRun(RenderRequest request, RunPlan plan, PictureCommand command
       command_line_(std::move(command_line)),
       keeps_going_(request_.flags.run.keep_going),
       resources_(resources),
-      log_(request_.flags.quiet) {}
+      log_(request_.flags.quiet),
+      shows_motion_(shows_motion(request_.flags)) {}
 
 ExitCode RenderRun::execute(const PlaceAmongRuns& place) {
   const ThreadLimit threads(request_.flags.threads);
@@ -130,9 +131,11 @@ void RenderRun::render_pose(const std::vector<PictureName>& poses, size_t at) {
   const RenderFlags flags = flags_for(request_.flags, plan_, plan_.scenes[scene_], name);
   auto posed = resources_.ahead.take({loader_, name.variant, name.frame}, log_);
   if (!posed) {
-    if (scene_poses_ > 1) loader_->open(flags.scene);
+    if (scene_poses_ > 1 || shows_motion_) loader_->open(flags.scene);
     posed = loader_->pose(flags, plan_, log_);
   }
+  std::optional<NeighborPoses> neighbors;
+  if (shows_motion_ && !plan_.sides[0]) neighbors = loader_->neighbors(flags, plan_);
   load_next(poses, at);
   if (done_ == 0) posed->add_load_seconds(request_.check_seconds);
   const std::vector<View> views = posed->views(flags, plan_, log_);
@@ -145,7 +148,12 @@ void RenderRun::render_pose(const std::vector<PictureName>& poses, size_t at) {
                        : view.side ? fmt::format("frame {}", *view.side)
                                    : fmt::format("camera '{}'", view.label));
     try {
-      render_view(*posed, view, flags_for(request_.flags, plan_, flags.scene, name), name);
+      std::optional<Moments> moments;
+      if (neighbors) moments = neighbors->moments(i);
+      if (shows_motion_ && view.beside)
+        moments = Moments{{posed->scene(), (*view.beside)[0]}, {posed->scene(), (*view.beside)[1]}};
+      render_view(*posed, view, flags_for(request_.flags, plan_, flags.scene, name), name,
+                  std::move(moments));
     } catch (...) {
       handle_failure(1);
     }
@@ -154,13 +162,14 @@ void RenderRun::render_pose(const std::vector<PictureName>& poses, size_t at) {
 }
 
 void RenderRun::render_view(PosedScene& posed, const View& view, const RenderFlags& flags,
-                            const PictureName& name) {
+                            const PictureName& name, std::optional<Moments> moments) {
   claim_files(flags);
   if (is_skipped(flags)) return;
   make_named_folders(flags, plan_.files);
   RenderRequest request = request_;
   request.flags = flags;
-  const PictureContext context{command_line_, command_for(flags, view, name), place_in_run(), *write_now_};
+  const PictureContext context{command_line_, command_for(flags, view, name), place_in_run(), *write_now_,
+                               std::move(moments)};
   const auto [code, is_stopped] = render_picture(request, posed, view, context, log_);
   ++rendered_;
   is_stopped_ = is_stopped;
@@ -201,7 +210,7 @@ void RenderRun::load_pose(std::shared_ptr<SceneLoader> loader, size_t scene, con
   const bool is_known = name.variant != plan_.variants.front() || !plan_.all_variants;
   const auto load = [=, this](NoticeLog& log) -> std::unique_ptr<PosedScene> {
     prepare();
-    if (keeps_file || !is_known) loader->open(file);
+    if (keeps_file || shows_motion_ || !is_known) loader->open(file);
     return is_known ? loader->pose(flags_for(request_.flags, plan_, file, name), plan_, log) : nullptr;
   };
   resources_.ahead.start({std::move(loader), name.variant, name.frame}, file, load);
@@ -249,6 +258,7 @@ std::string RenderRun::command_for(const RenderFlags& picture, const View& view,
                                    const PictureName& name) const {
   std::map<std::string, std::string> instead;
   if (plan_.times[0]) instead["--at"] = fmt::format("{}", *picture.import.time);
+  if (shows_motion_ && picture.run.fps) instead["--fps"] = fmt::format("{}", *picture.run.fps);
   if (plan_.all_variants) instead["--variant"] = name.variant;
   if (plan_.all_cameras) instead["--camera"] = view.is_of_scene ? view.label : "";
   if (view.side) instead["--frames"] = std::to_string(*view.side);

@@ -57,7 +57,8 @@ class RenderRun {
   void render_scene(size_t index);
   /// Every picture of a scene in one variant and at one time, `poses[at]`.
   void render_pose(const std::vector<PictureName>& poses, size_t at);
-  void render_view(PosedScene& posed, const View& view, const RenderFlags& flags, const PictureName& name);
+  void render_view(PosedScene& posed, const View& view, const RenderFlags& flags, const PictureName& name,
+                   std::optional<Moments> moments);
 
   /// Whether all files of a picture are there and finished.
   bool exists(const RenderFlags& picture) const;
@@ -97,6 +98,7 @@ class RenderRun {
   PlaceAmongRuns place_;
   NoticeLog log_;
   bool is_prepared_ = false;
+  const bool shows_motion_;
   std::shared_ptr<SceneLoader> loader_;  ///< of the scene under way
   std::shared_ptr<SceneLoader> next_loader_;
   size_t scene_ = 0, next_scene_ = 0;  ///< numbers of these scenes

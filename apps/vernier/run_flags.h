@@ -30,8 +30,13 @@ void add_jobs_flag(CLI::App& command, RunFlags& flags);
 /// Declares what is done soon: --draft, --write-every, --format.
 void add_preview_flags(CLI::App& command, RunFlags& flags);
 
-/// Throws Error(usage) on flags that mean nothing beside each other; `time_is_given`: by --at.
-void check_run_flags(const RunFlags& flags, bool time_is_given);
+/// What else is asked for: a time by --at, and how things move between pictures.
+struct TimeFlags {
+  bool time_is_given = false, shows_motion = false;
+};
+
+/// Throws Error(usage) on flags that mean nothing beside each other.
+void check_run_flags(const RunFlags& flags, const TimeFlags& others);
 
 /// Seconds between pictures of a render that is not done yet; none: there are none. `on_terminal`: somebody
 /// is watching.

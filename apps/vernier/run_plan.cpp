@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <map>
@@ -14,6 +15,7 @@
 #include "apps/vernier/picture_output.h"
 #include "core/base/atomic_file.h"
 #include "core/image/image_io.h"
+#include "integrators/render/layers.h"
 
 namespace vernier::apps {
 namespace {
@@ -137,8 +139,16 @@ void require_scenes(const RunPlan& plan) {
 
 }  // namespace
 
+bool shows_motion(const RenderFlags& flags) {
+  const std::vector<Layer> chosen = find_layers(flags.layers);
+  return std::any_of(chosen.begin(), chosen.end(),
+                     [](const Layer& l) { return l.need == LayerNeed::motion; });
+}
+
+double frame_seconds(const RunFlags& flags) { return 1 / flags.fps.value_or(default_fps); }
+
 RunPlan make_plan(const RenderFlags& flags) {
-  check_run_flags(flags.run, flags.import.time.has_value());
+  check_run_flags(flags.run, {flags.import.time.has_value(), shows_motion(flags)});
   RunPlan plan;
   plan.scenes = flags.run.scenes;
   plan.all_variants = flags.import.variant == all;

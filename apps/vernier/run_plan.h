@@ -29,6 +29,12 @@ struct RunPlan {
   FilePatterns files;
 };
 
+/// Whether the pictures are compared with those before and after them. Throws Error(usage) on an unknown
+/// layer.
+bool shows_motion(const RenderFlags& flags);
+/// From one picture of an animation to the next.
+double frame_seconds(const RunFlags& flags);
+
 /// Throws Error(usage) when the flags contradict each other, when a placeholder has nothing to stand for, and
 /// when two pictures would be written to one file.
 RunPlan make_plan(const RenderFlags& flags);
