@@ -60,7 +60,8 @@ struct PlacedImage {
 PlacedImage read_picture(OIIO::ImageInput& input, const std::string& path) {
   const OIIO::ImageSpec spec = input.spec();
   Image stored(spec.width, spec.height, spec.nchannels);
-  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, stored.values.data()))
+  if (!input.read_image(input.current_subimage(), 0, 0, spec.nchannels, OIIO::TypeFloat,
+                        stored.values.data()))
     throw input_error(path, fmt::format("cannot decode image, it is damaged: {}", input.geterror()));
   if (std::strcmp(input.format_name(), "openexr") != 0 || spec.roi() == spec.roi_full()) return {stored, {}};
   const OIIO::ROI shown = OIIO::roi_intersection(spec.roi(), spec.roi_full());

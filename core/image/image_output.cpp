@@ -2,6 +2,8 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -170,6 +172,33 @@ Image channels_of(const Image& image, const std::vector<int>& channels) {
   return chosen;
 }
 
+/// A file without a name in any folder: OpenImageIO 2.4 takes no proxy for files of several parts.
+class MemoryFile {
+ public:
+  MemoryFile() : descriptor_(::memfd_create("vernier", MFD_CLOEXEC)) {}
+  ~MemoryFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  /// By which this process can open it; empty where there is none.
+  std::string name() const {
+    return descriptor_ < 0 ? std::string() : fmt::format("/proc/self/fd/{}", descriptor_);
+  }
+  void copy_to(OIIO::Filesystem::IOProxy& proxy) const {
+    std::vector<char> block(size_t(1) << 16);
+    for (off_t offset = 0;;) {
+      const ssize_t count = ::pread(descriptor_, block.data(), block.size(), offset);
+      if (count <= 0 || proxy.write(block.data(), size_t(count)) != size_t(count)) return;
+      offset += count;
+    }
+  }
+
+ private:
+  int descriptor_;
+};
+
 void write_parts(const std::string& path, const Image& image, const std::vector<std::string>& channel_names,
                  const Metadata& metadata, const ExrOptions& options, OIIO::Filesystem::IOProxy& proxy) {
   const std::vector<Part> parts = parts_of(channel_names);
@@ -182,18 +211,20 @@ void write_parts(const std::string& path, const Image& image, const std::vector<
                              metadata_of(part, is_first, metadata), options));
     specs.back().attribute("oiio:subimagename", part.name);
   }
+  const MemoryFile file;
   const auto output = OIIO::ImageOutput::create("openexr");
-  if (!output)
-    throw output_error(path, fmt::format("this OpenImageIO cannot write OpenEXR: {}", OIIO::geterror()));
-  output->set_ioproxy(&proxy);
-  bool is_well = output->open("picture.exr", int(specs.size()), specs.data());
+  if (!output || file.name().empty())
+    throw output_error(path,
+                       fmt::format("cannot write an OpenEXR file of several parts: {}", OIIO::geterror()));
+  bool is_well = output->open(file.name(), int(specs.size()), specs.data());
   for (size_t i = 0; is_well && i < parts.size(); ++i) {
-    if (i > 0) is_well = output->open("picture.exr", specs[i], OIIO::ImageOutput::AppendSubimage);
+    if (i > 0) is_well = output->open(file.name(), specs[i], OIIO::ImageOutput::AppendSubimage);
     is_well =
         is_well && output->write_image(OIIO::TypeFloat, channels_of(image, parts[i].channels).values.data());
   }
   if (!is_well || !output->close())
     throw output_error(path, fmt::format("cannot write image: {}", output->geterror()));
+  file.copy_to(proxy);
 }
 
 void write_exr_to(const std::string& path, const Image& image, const std::vector<std::string>& channel_names,
