@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 
 #include "core/base/quantities.h"
@@ -33,7 +36,8 @@ void require_picture(const std::string& text) {
                 fmt::format("--background: '{}' is no file and no colour; expected sRGB such as '#ff8000', "
                             "scene-linear such as 0.2,0.2,0.2, or a picture",
                             text));
-  read_image(text);  // or it throws, before anything else has taken time
+  if (!std::ifstream(text))
+    throw Error(ErrorKind::input, text, {}, fmt::format("cannot open image: {}", std::strerror(errno)));
 }
 
 }  // namespace
@@ -59,6 +63,10 @@ void add_background_flags(CLI::App& command, BackgroundFlags& flags) {
       ->check(CLI::IsMember({"none", "matte", "shadow"}))
       ->type_name("none|matte|shadow")
       ->capture_default_str();
+}
+
+void require_background(const BackgroundFlags& flags) {
+  if (const std::string file = flags.file(); !file.empty()) read_image(file);
 }
 
 std::optional<GroundKind> choose_ground(const BackgroundFlags& flags, const std::string& integrator) {

@@ -24,8 +24,12 @@ struct BackgroundFlags {
 /// Declares the flags on `command`.
 void add_background_flags(CLI::App& command, BackgroundFlags& flags);
 
-/// What they ask for, with a picture that can be read, for outputs that can hold it. Throws Error.
+/// What they ask for, with a picture that is there, for outputs that can hold it. Throws Error.
 Background choose_background(const BackgroundFlags& flags, const std::vector<std::string>& outputs);
+
+/// Throws Error(input) unless the picture behind the scene, if there is to be one, can be decoded: before
+/// anything else takes time, for it is read only when rendering begins.
+void require_background(const BackgroundFlags& flags);
 
 /// The ground asked for. Throws Error(usage) on a shadow with nothing behind it to fall on, or for an
 /// integrator that casts none.

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "vernier/error.h"
 
@@ -28,9 +29,10 @@ ExitCode exit_code(ErrorKind kind);
 /// The program while its command line is read.
 struct Program {
   CLI::App app;
-  std::string name;               ///< by which it was called: a path, or what was found in $PATH
-  std::string command_line;       ///< as typed, quoted where the shell needs it
-  std::function<ExitCode()> run;  ///< set by the chosen subcommand's callback; may throw vernier::Error
+  std::string name;                ///< by which it was called: a path, or what was found in $PATH
+  std::string command_line;        ///< as typed, quoted where the shell needs it
+  std::vector<std::string> words;  ///< of the command line but the first, as typed
+  std::function<ExitCode()> run;   ///< set by the chosen subcommand's callback; may throw vernier::Error
 };
 
 // Each adds one subcommand to `program.app`, with a callback that sets `program.run`:

@@ -41,6 +41,8 @@ Compression parse_compression(std::string_view text) {
 }  // namespace
 
 void add_exr_flags(CLI::App& command, ExrOptions& options) {
+  command.add_flag("--multipart", options.multipart,
+                   "a part for each layer of .exr files, so that programs read only those they want");
   command.add_flag("--half", options.half, "16-bit colour and alpha in .exr files; layers keep 32 bits");
   command
       .add_option(
@@ -52,9 +54,12 @@ void add_exr_flags(CLI::App& command, ExrOptions& options) {
 }
 
 void check_exr_flags(const ExrOptions& options, const std::vector<std::string>& outputs, bool has_layers) {
-  const bool is_asked = options.half || options.compression != ExrOptions().compression;
+  const bool is_asked = options.half || options.multipart || options.compression != ExrOptions().compression;
   if (is_asked && std::all_of(outputs.begin(), outputs.end(), is_display_file))
-    throw Error(ErrorKind::usage, {}, options.half ? "--half" : "--compression",
+    throw Error(ErrorKind::usage, {},
+                options.half        ? "--half"
+                : options.multipart ? "--multipart"
+                                    : "--compression",
                 "is about .exr files; add -o FILE.exr or leave it out");
   if (has_layers && parse_compression(options.compression).loses)
     throw Error(ErrorKind::usage, {}, "--compression",

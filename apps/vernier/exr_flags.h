@@ -11,7 +11,7 @@
 
 namespace vernier::apps {
 
-/// --half and --compression.
+/// --half, --multipart and --compression.
 void add_exr_flags(CLI::App& command, ExrOptions& options);
 
 /// Throws Error(usage) when such a flag is given and none of the outputs is an .exr, or when values that

@@ -228,6 +228,8 @@ FarmPlan make_farm_plan(const FarmFlags& flags, const CLI::App& command) {
   require_one(run);
   require_readable(run.scenes.front());
   check_files(request.flags, run);
+  read_surroundings(request.flags.surroundings);  // or it throws here rather than in every part
+  require_background(flags.render.background);
   FarmPlan plan;
   plan.work = fs::current_path().string();
   plan.threads = flags.render.threads;

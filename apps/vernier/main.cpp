@@ -11,8 +11,8 @@
 
 #include "apps/vernier/commands.h"
 #include "apps/vernier/messages.h"
+#include "apps/vernier/parse_failure.h"
 #include "apps/vernier/stop_signals.h"
-#include "core/base/names.h"
 #include "vernier/error.h"
 #include "vernier/version.h"
 
@@ -26,70 +26,12 @@ constexpr void (*subcommands[])(Program&) = {
     register_farm,    register_serve,   register_bench,  register_cli_files,
 };
 
-/// The subcommand that was being read when parsing failed, innermost.
-const CLI::App& innermost(const CLI::App& app) {
-  const CLI::App* at = &app;
-  while (!at->get_subcommands().empty()) at = at->get_subcommands().back();
-  return *at;
-}
-
-std::vector<std::string> flag_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options()) {
-    for (const auto& name : option->get_lnames()) names.push_back("--" + name);
-    for (const auto& name : option->get_snames()) names.push_back("-" + name);
-  }
-  return names;
-}
-
-std::vector<std::string> subcommand_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({}))
-    if (!command->get_group().empty()) names.push_back(command->get_name());
-  return names;
-}
-
-/// "vernier bench rays"
-std::string full_name(const CLI::App& command) {
-  std::string name = command.get_name();
-  for (const CLI::App* up = command.get_parent(); up; up = up->get_parent())
-    name.insert(0, up->get_name() + " ");
-  return name;
-}
-
-/// What is wrong with the words that nothing on the command line takes.
-std::string describe_extras(const CLI::App& app, const std::vector<std::string>& extras) {
-  const CLI::App& command = innermost(app);
-  const std::string prefix = full_name(command);
-  for (const auto& word : extras) {
-    if (word.size() < 2 || word[0] != '-') continue;
-    const std::string flag = word.substr(0, word.find('='));
-    const auto nearest = flag.size() < 4 ? "" : nearest_name(flag, flag_names(command));
-    return fmt::format("unknown flag '{}'; {} {} --help", flag,
-                       nearest.empty() ? "see" : fmt::format("did you mean '{}'? See", nearest), prefix);
-  }
-  if (const auto names = subcommand_names(command); !names.empty())
-    return unknown_name_message("command", extras.front(), names);
-  return fmt::format("'{}' is one argument too many; see {} --help", extras.front(), prefix);
-}
-
 ExitCode parse_failed(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
     app.exit(error);  // prints the help or the version that was asked for
     return ExitCode::done;
   }
-  // A misspelt flag is named first: it is often why something else is missing.
-  std::vector<std::string> extras = app.remaining(true);
-  const bool flag =
-      std::any_of(extras.begin(), extras.end(), [](const auto& w) { return w.size() > 1 && w[0] == '-'; });
-  const CLI::App& command = innermost(app);
-  const bool no_command = command.get_require_subcommand_min() > 0;
-  if (flag || (!extras.empty() && (no_command || dynamic_cast<const CLI::ExtrasError*>(&error))))
-    print_error(describe_extras(app, extras));
-  else if (no_command)
-    print_error(fmt::format("missing COMMAND; see {} --help", full_name(command)));
-  else
-    print_error(error.what());
+  print_error(parse_failure(app, error));
   return ExitCode::usage;
 }
 
@@ -108,6 +50,7 @@ ExitCode run_program(int argc, char** argv) {
   Program program;
   program.name = argv[0];
   const std::span<const char* const> words(argv, static_cast<size_t>(argc));
+  program.words.assign(words.begin() + (words.empty() ? 0 : 1), words.end());
   program.command_line = shell_quoted(words);
   if (asks_for_json(words)) speak_json({{"vernier", version()}, {"command", program.command_line}});
   program.app.name("vernier");

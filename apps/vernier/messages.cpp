@@ -5,11 +5,24 @@
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 namespace vernier::apps {
 namespace {
 
 bool json_is_spoken = false;
+
+struct Job {
+  std::string place;
+  size_t number, count;
+};
+std::optional<Job> job;  ///< that is spoken about
+
+/// "jobs.txt: line 3: TEXT" of what is about a job.
+std::string placed(std::string_view text) {
+  if (!job) return std::string(text);
+  return text.empty() ? job->place : fmt::format("{}: {}", job->place, text);
+}
 
 const char* name_of(Notice::Severity severity) {
   return severity == Notice::Severity::warning ? "warning" : "note";
@@ -25,8 +38,16 @@ void speak_json(nlohmann::ordered_json started) {
 
 bool speaks_json() { return json_is_spoken; }
 
-void print_event(const nlohmann::ordered_json& event) {
+JobScope::JobScope(std::string place, size_t number, size_t count) {
+  job = Job{std::move(place), number, count};
+}
+
+JobScope::~JobScope() { job.reset(); }
+
+void print_event(const nlohmann::ordered_json& said) {
   if (!json_is_spoken) return;
+  nlohmann::ordered_json event = said;
+  if (job) event.update({{"job", job->number}, {"jobs", job->count}});
   // File names need not be UTF-8, which JSON is.
   fmt::print(stderr, "{}\n", event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
@@ -35,7 +56,7 @@ void print_error(std::string_view text) {
   if (json_is_spoken)
     print_event({{"event", "failed"}, {"text", one_line(text)}});
   else
-    fmt::print(stderr, "error: {}\n", one_line(text));
+    fmt::print(stderr, "error: {}\n", one_line(placed(text)));
 }
 
 void print_notice(const Notice& notice) {
@@ -44,7 +65,7 @@ void print_notice(const Notice& notice) {
                  {"place", one_line(notice.place)},
                  {"text", one_line(notice.text)}});
   else
-    fmt::print(stderr, "{}\n", describe(notice));
+    fmt::print(stderr, "{}\n", describe({notice.severity, placed(notice.place), notice.text}));
 }
 
 std::string describe(const Notice& notice) {

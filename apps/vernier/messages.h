@@ -19,6 +19,16 @@ namespace vernier::apps {
 void speak_json(nlohmann::ordered_json started);
 bool speaks_json();
 
+/// While it lives, all that is said is about one job of several: lines begin with its place in their list,
+/// and events have its number.
+class JobScope {
+ public:
+  JobScope(std::string place, size_t job, size_t jobs);
+  ~JobScope();
+  JobScope(const JobScope&) = delete;
+  JobScope& operator=(const JobScope&) = delete;
+};
+
 /// Says an event, an object with a field "event", if standard error is for a program; else nothing.
 void print_event(const nlohmann::ordered_json& event);
 

@@ -13,7 +13,7 @@ const std::set<std::string> not_of_the_picture{
     "--output", "--format",      "--stats",      "--report",  "--checkpoint",    "--checkpoint-every",
     "--resume", "--progress",    "--quiet",      "--verbose", "--threads",       "--frames",
     "--fps",    "--write-every", "--keep-going", "--help",    "--skip-existing", "--drop-checkpoint",
-    "--host",   "--port"};
+    "--host",   "--port",        "--jobs"};
 
 }  // namespace
 
@@ -24,7 +24,7 @@ std::vector<CommandFlag> flags_of(const CLI::App& command) {
     CommandFlag flag{"--" + option->get_lnames().front(), {}, option->count() > 0};
     const bool takes_value = option->get_items_expected_max() > 0;
     if (flag.is_given && takes_value)
-      for (const std::string& value : option->results())
+      for (const std::string& value : option->reduced_results())
         if (!value.empty()) flag.values.push_back(value);
     flags.push_back(std::move(flag));
   }

@@ -19,8 +19,13 @@ void add_sides(const View& view, const Vec3f& center, const RunPlan& plan, std::
   for (const auto side : plan.sides) {
     views.push_back(view);
     views.back().side = side;
-    const double turn = side ? double(*side - 1) / plan.sides_around : 0;
-    if (side) views.back().camera = carried_around(view.camera, center, 2 * std::numbers::pi * turn);
+    if (!side) continue;
+    const auto camera_of = [&](int picture) {
+      return carried_around(view.camera, center,
+                            2 * std::numbers::pi * double(picture - 1) / plan.sides_around);
+    };
+    views.back().camera = camera_of(*side);
+    views.back().beside = {camera_of(*side - 1), camera_of(*side + 1)};
   }
 }
 
@@ -94,6 +99,18 @@ std::unique_ptr<PosedScene> SceneLoader::pose(const RenderFlags& flags, const Ru
   auto posed = std::make_unique<PosedScene>(flags, plan, std::move(description), log);
   posed->add_load_seconds(seconds);
   return posed;
+}
+
+NeighborPoses SceneLoader::neighbors(const RenderFlags& flags, const RunPlan& plan) {
+  const auto pose_at = [&](double seconds) -> NeighborPoses::Pose {
+    NoticeLog unsaid(true);  // what is to be said of the scene is said of the picture itself
+    RenderFlags other = flags;
+    other.import.time = seconds;
+    const auto posed = pose(other, plan, unsaid);
+    return {posed->scene(), posed->views(other, plan, unsaid)};
+  };
+  const double time = flags.import.time.value_or(0), step = frame_seconds(flags.run);
+  return {pose_at(time - step), pose_at(time + step)};
 }
 
 }  // namespace vernier::apps

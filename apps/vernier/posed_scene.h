@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "apps/vernier/run_plan.h"
 #include "scene/scene.h"
 #include "vernier/scene_file.h"
+#include "vernier/session.h"
 
 namespace vernier::apps {
 
@@ -23,6 +25,7 @@ struct View {
   bool is_of_scene = false;  ///< rather than fitted or placed by flags
   std::optional<int> side;   ///< number of the picture of a turntable
   CameraDescription front;   ///< camera that a turntable begins with; without one, the same
+  std::optional<std::array<CameraDescription, 2>> beside;  ///< of the turntable's pictures before and after
 };
 
 /// A scene at one time and in one variant, ready for pictures by any camera.
@@ -54,6 +57,20 @@ class PosedScene {
   std::optional<Transform> decided_by_;       ///< front of the turntable that they were chosen for
 };
 
+/// The pictures before and after one of an animation, of which only the geometry is looked at.
+struct NeighborPoses {
+  struct Pose {
+    std::shared_ptr<const Scene> scene;
+    std::vector<View> views;
+  };
+  Pose previous, next;
+
+  /// For the picture by view `view` of the pose between them.
+  Moments moments(size_t view) const {
+    return {{previous.scene, previous.views.at(view).camera}, {next.scene, next.views.at(view).camera}};
+  }
+};
+
 /// Reads a scene for all of its pictures.
 class SceneLoader {
  public:
@@ -65,6 +82,8 @@ class SceneLoader {
   std::vector<std::string> variants() const { return file_->variants(); }
   /// Reads what has not been read yet, and builds the scene.
   std::unique_ptr<PosedScene> pose(const RenderFlags& flags, const RunPlan& plan, NoticeLog& log);
+  /// The scene a frame before and after the time in the flags.
+  NeighborPoses neighbors(const RenderFlags& flags, const RunPlan& plan);
 
  private:
   const RenderRequest& request_;

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/vernier/checkpointing.h"
 #include "apps/vernier/commands.h"
+#include "apps/vernier/job_run.h"
 #include "apps/vernier/render_run.h"
-#include "core/base/parallel.h"
 
 namespace vernier::apps {
 namespace {
 
-ExitCode run_render(const RenderFlags& flags, const CLI::App& command, const std::string& command_line) {
+ExitCode run_render(const RenderFlags& flags, const CLI::App& command, const Program& program) {
   if (print_requested_list(flags)) return ExitCode::done;
-  const ThreadLimit threads(flags.threads);
+  if (!flags.run.jobs.empty()) return run_jobs(flags, program.words);
   RenderRequest request = check_render_flags(flags);
   RunPlan plan = make_plan(request.flags);
   check_files(request.flags, plan);
-  return RenderRun(std::move(request), std::move(plan), PictureCommand(command), command_line).execute();
+  RunResources resources;
+  RenderRun run(std::move(request), std::move(plan), PictureCommand(command), program.command_line,
+                resources);
+  return run.execute();
 }
 
 }  // namespace
@@ -22,10 +25,11 @@ void register_render(Program& program) {
   CLI::App* command = program.app.add_subcommand("render", "Render glTF scenes to pictures");
   auto flags = std::make_shared<RenderFlags>();
   add_render_flags(*command, *flags);
+  add_jobs_flag(*command, flags->run);
   add_checkpoint_flags(*command, *flags);
   command->footer("Example: vernier render scene.glb -o out.exr -o out.png --time 1m");
   command->callback([&program, flags, command] {
-    program.run = [&program, flags, command] { return run_render(*flags, *command, program.command_line); };
+    program.run = [&program, flags, command] { return run_render(*flags, *command, program); };
   });
 }
 

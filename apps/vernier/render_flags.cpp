@@ -117,7 +117,7 @@ void print_layers() {
   for (const Layer& layer : layers())
     fmt::print("{:<21} {}\n{:21} channels {}\n", layer.name, layer.description, "",
                fmt::join(layer.channels.begin(), layer.channels.begin() + layer.channel_count(), ", "));
-  fmt::print("'light' is all the light of one way, 'all' everything else\n");
+  fmt::print("'light' is all the light of one way, 'all' everything else but motion\n");
 }
 
 void print_filters() {

@@ -199,7 +199,7 @@ RenderRequest check_render_flags(const RenderFlags& given) {
   if (!flags.denoise.empty()) request.denoiser = &find_denoiser(flags.denoise);
   if (request.settings.width > 0) check_picture_size(request.settings, memory_use(request));
   request.display = choose_display(flags);
-  request.surroundings = read_surroundings(flags.surroundings);
+  check_surroundings(flags.surroundings);
   request.check_seconds = watch.lap();
   return request;
 }

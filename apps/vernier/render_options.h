@@ -28,11 +28,11 @@ struct RenderRequest {
   std::vector<Layer> layers;
   const Denoiser* denoiser = nullptr;  ///< null: none
   DisplayOptions display;
-  std::optional<Surroundings> surroundings;  ///< none: left to the scene
+  std::optional<Surroundings> surroundings;  ///< none: left to the scene, or not read yet
   double check_seconds = 0;                  ///< that all of this took
 };
 
-/// Checks names and sizes, and reads the surroundings. Files: run_plan.h. Throws Error.
+/// Checks names and sizes, and decodes nothing. Files: run_plan.h. Throws Error.
 RenderRequest check_render_flags(const RenderFlags& flags);
 
 MemoryUse memory_use(const RenderRequest& request);

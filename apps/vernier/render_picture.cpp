@@ -106,6 +106,7 @@ PictureOutcome render_picture(const RenderRequest& request, PosedScene& posed, c
   if (flags.outputs.empty()) report.kept = flags.checkpoint;
   prepare(request, posed, view, report, log);
   RenderSession session(posed.scene(), report.settings);
+  if (context.moments) session.set_moments(*context.moments);
   checkpointing.attach(session);
   PartialPictures partial(request, report, log);
   partial.attach(session, context.write_now);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <string>
 
 #include "apps/vernier/posed_scene.h"
@@ -14,6 +15,7 @@ struct PictureContext {
   std::string command_line, picture_command;
   PlaceInRun place;
   std::atomic<bool>& write_now;
+  std::optional<Moments> moments;  ///< none: no layer asks for them
 };
 
 struct PictureOutcome {

@@ -5,11 +5,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <new>
 #include <nlohmann/json.hpp>
 
 #include "apps/vernier/messages.h"
 #include "apps/vernier/picture_output.h"
+#include "apps/vernier/stopwatch.h"
+#include "core/base/parallel.h"
 
 namespace vernier::apps {
 namespace {
@@ -37,21 +40,29 @@ void make_named_folders(const RenderFlags& picture, const FilePatterns& files) {
 
 }  // namespace
 
-RenderRun::RenderRun(RenderRequest request, RunPlan plan, PictureCommand command, std::string command_line)
+RenderRun::RenderRun(RenderRequest request, RunPlan plan, PictureCommand command, std::string command_line,
+                     RunResources& resources)
     : request_(std::move(request)),
       plan_(std::move(plan)),
       command_(std::move(command)),
       command_line_(std::move(command_line)),
       keeps_going_(request_.flags.run.keep_going),
-      log_(request_.flags.quiet) {}
+      resources_(resources),
+      log_(request_.flags.quiet),
+      shows_motion_(shows_motion(request_.flags)) {}
 
-ExitCode RenderRun::execute() {
+ExitCode RenderRun::execute(const PlaceAmongRuns& place) {
+  const ThreadLimit threads(request_.flags.threads);
+  const WriteSignals write_signals;
+  write_now_ = &write_signals.now();
+  place_ = place;
+  resources_.ahead.wait();  // it may be preparing this run
+  prepare();
   scenes_left_ = plan_.scenes.size();
-  for (const std::string& scene : plan_.scenes) {
-    if (is_over()) break;
+  for (size_t scene = 0; scene < plan_.scenes.size() && !is_over(); ++scene) {
     --scenes_left_;
     scene_done_ = 0;
-    scene_pictures_ = plan_.variants.size() * plan_.times.size() * plan_.sides.size();
+    scene_pictures_ = pictures_of_scene();
     try {
       render_scene(scene);
     } catch (...) {
@@ -62,38 +73,70 @@ ExitCode RenderRun::execute() {
   return is_stopped_ && code_ == ExitCode::done ? ExitCode::stopped : code_;
 }
 
-void RenderRun::render_scene(const std::string& scene) {
-  SceneLoader loader(request_);
+size_t RenderRun::pictures_of_scene() const {
+  return plan_.variants.size() * plan_.times.size() * plan_.sides.size();
+}
+
+void RenderRun::prepare() {
+  if (std::exchange(is_prepared_, true)) return;
+  Stopwatch watch;
+  require_background(request_.flags.background);
+  request_.surroundings = read_surroundings(request_.flags.surroundings, resources_.environments);
+  request_.check_seconds += watch.lap();
+}
+
+std::vector<PictureName> RenderRun::poses_of(const std::string& scene,
+                                             const std::vector<std::string>& variants) const {
+  std::vector<PictureName> poses;
+  for (const std::string& variant : variants)
+    for (const auto& time : plan_.times) poses.push_back({stem_of(scene), "", variant, time});
+  return poses;
+}
+
+void RenderRun::render_scene(size_t index) {
+  scene_ = index;
+  const std::string& scene = plan_.scenes[index];
+  const bool is_loading = next_loader_ && next_scene_ == index;
+  loader_ = is_loading ? std::move(next_loader_) : std::make_shared<SceneLoader>(request_);
+  next_loader_.reset();
   std::vector<std::string> variants = plan_.variants;
   if (plan_.all_variants) {
-    loader.open(scene);
-    variants = loader.variants();
+    resources_.ahead.wait();
+    loader_->open(scene);
+    variants = loader_->variants();
   }
   if (variants.empty())
     throw Error(ErrorKind::usage, scene, {}, "has no variants of its materials; leave --variant out");
   scene_poses_ = variants.size() * plan_.times.size();
   scene_pictures_ = scene_poses_ * plan_.sides.size();
-  for (const std::string& variant : variants)
-    for (const auto& time : plan_.times) {
-      if (is_over()) return;
-      const PictureName name{stem_of(scene), "", variant, time};
-      if (is_pose_skipped(scene, name)) continue;
-      if (scene_poses_ > 1) loader.open(scene);
-      const std::string detail = plan_.times.size() > 1 ? fmt::format("frame {}", *time)
-                                 : variants.size() > 1  ? fmt::format("variant '{}'", variant)
-                                                        : "";
-      log_.begin_pose(plan_.scenes.size() > 1 ? scene : "", detail);
-      const size_t before = scene_done_;
-      try {
-        render_pose(loader, flags_for(request_.flags, plan_, scene, name), name);
-      } catch (...) {
-        handle_failure(plan_.sides.size() - std::min(plan_.sides.size(), scene_done_ - before));
-      }
+  const std::vector<PictureName> poses = poses_of(scene, variants);
+  for (size_t at = 0; at < poses.size() && !is_over(); ++at) {
+    const PictureName& name = poses[at];
+    if (is_pose_skipped(scene, name)) continue;
+    const std::string detail = plan_.times.size() > 1 ? fmt::format("frame {}", *name.frame)
+                               : variants.size() > 1  ? fmt::format("variant '{}'", name.variant)
+                                                      : "";
+    log_.begin_pose(plan_.scenes.size() > 1 ? scene : "", detail);
+    const size_t before = scene_done_;
+    try {
+      render_pose(poses, at);
+    } catch (...) {
+      handle_failure(plan_.sides.size() - std::min(plan_.sides.size(), scene_done_ - before));
     }
+  }
 }
 
-void RenderRun::render_pose(SceneLoader& loader, const RenderFlags& flags, PictureName name) {
-  const auto posed = loader.pose(flags, plan_, log_);
+void RenderRun::render_pose(const std::vector<PictureName>& poses, size_t at) {
+  PictureName name = poses[at];
+  const RenderFlags flags = flags_for(request_.flags, plan_, plan_.scenes[scene_], name);
+  auto posed = resources_.ahead.take({loader_, name.variant, name.frame}, log_);
+  if (!posed) {
+    if (scene_poses_ > 1 || shows_motion_) loader_->open(flags.scene);
+    posed = loader_->pose(flags, plan_, log_);
+  }
+  std::optional<NeighborPoses> neighbors;
+  if (shows_motion_ && !plan_.sides[0]) neighbors = loader_->neighbors(flags, plan_);
+  load_next(poses, at);
   if (done_ == 0) posed->add_load_seconds(request_.check_seconds);
   const std::vector<View> views = posed->views(flags, plan_, log_);
   scene_pictures_ = scene_poses_ * views.size();
@@ -105,7 +148,12 @@ void RenderRun::render_pose(SceneLoader& loader, const RenderFlags& flags, Pictu
                        : view.side ? fmt::format("frame {}", *view.side)
                                    : fmt::format("camera '{}'", view.label));
     try {
-      render_view(*posed, view, flags_for(request_.flags, plan_, flags.scene, name), name);
+      std::optional<Moments> moments;
+      if (neighbors) moments = neighbors->moments(i);
+      if (shows_motion_ && view.beside)
+        moments = Moments{{posed->scene(), (*view.beside)[0]}, {posed->scene(), (*view.beside)[1]}};
+      render_view(*posed, view, flags_for(request_.flags, plan_, flags.scene, name), name,
+                  std::move(moments));
     } catch (...) {
       handle_failure(1);
     }
@@ -114,13 +162,14 @@ void RenderRun::render_pose(SceneLoader& loader, const RenderFlags& flags, Pictu
 }
 
 void RenderRun::render_view(PosedScene& posed, const View& view, const RenderFlags& flags,
-                            const PictureName& name) {
+                            const PictureName& name, std::optional<Moments> moments) {
   claim_files(flags);
   if (is_skipped(flags)) return;
   make_named_folders(flags, plan_.files);
   RenderRequest request = request_;
   request.flags = flags;
-  const PictureContext context{command_line_, command_for(flags, view, name), place(), write_signals_.now()};
+  const PictureContext context{command_line_, command_for(flags, view, name), place_in_run(), *write_now_,
+                               std::move(moments)};
   const auto [code, is_stopped] = render_picture(request, posed, view, context, log_);
   ++rendered_;
   is_stopped_ = is_stopped;
@@ -130,17 +179,58 @@ void RenderRun::render_view(PosedScene& posed, const View& view, const RenderFla
     fail(1, code);
 }
 
-bool RenderRun::is_pose_skipped(const std::string& scene, PictureName name) {
-  if (!request_.flags.run.skip_existing || plan_.all_cameras || !knows_names_without_scene(plan_))
-    return false;
+void RenderRun::load_next(const std::vector<PictureName>& poses, size_t at) {
+  // A picture that has a time to be rendered in has the machine to itself, and one thread is asked for to
+  // leave the others alone.
+  if (std::isfinite(request_.settings.limits.seconds) || thread_count() < 2) return;
+  for (size_t next = at + 1; next < poses.size(); ++next)
+    if (skipped_pictures(plan_.scenes[scene_], poses[next]).empty())
+      return load_pose(loader_, scene_, poses[next], true);
+  for (size_t scene = scene_ + 1; scene < plan_.scenes.size(); ++scene)
+    if (load_scene(scene)) return;
+  for (size_t scene = 0; next_run_ && scene < next_run_->plan_.scenes.size(); ++scene)
+    if (next_run_->load_scene(scene)) return;
+}
+
+bool RenderRun::load_scene(size_t index) {
+  const std::string& scene = plan_.scenes[index];
+  const std::vector<PictureName> poses = poses_of(scene, plan_.variants);
+  const auto is_missing = [&](const auto& name) { return skipped_pictures(scene, name).empty(); };
+  const auto first = std::find_if(poses.begin(), poses.end(), is_missing);
+  if (first == poses.end()) return false;
+  next_scene_ = index;
+  next_loader_ = std::make_shared<SceneLoader>(request_);
+  load_pose(next_loader_, index, *first, poses.size() > 1);
+  return true;
+}
+
+void RenderRun::load_pose(std::shared_ptr<SceneLoader> loader, size_t scene, const PictureName& name,
+                          bool keeps_file) {
+  const std::string file = plan_.scenes[scene];
+  const bool is_known = name.variant != plan_.variants.front() || !plan_.all_variants;
+  const auto load = [=, this](NoticeLog& log) -> std::unique_ptr<PosedScene> {
+    prepare();
+    if (keeps_file || shows_motion_ || !is_known) loader->open(file);
+    return is_known ? loader->pose(flags_for(request_.flags, plan_, file, name), plan_, log) : nullptr;
+  };
+  resources_.ahead.start({std::move(loader), name.variant, name.frame}, file, load);
+}
+
+std::vector<RenderFlags> RenderRun::skipped_pictures(const std::string& scene, PictureName name) const {
   std::vector<RenderFlags> pictures;
+  if (!request_.flags.run.skip_existing || plan_.all_cameras || !knows_names_without_scene(plan_)) return {};
   for (const auto& side : plan_.sides) {
     if (side) name.frame = side;
     pictures.push_back(flags_for(request_.flags, plan_, scene, name));
-    if (!exists(pictures.back())) return false;
+    if (!exists(pictures.back())) return {};
   }
+  return pictures;
+}
+
+bool RenderRun::is_pose_skipped(const std::string& scene, const PictureName& name) {
+  const std::vector<RenderFlags> pictures = skipped_pictures(scene, name);
   for (const RenderFlags& picture : pictures) is_skipped(picture);
-  return true;
+  return !pictures.empty();
 }
 
 bool RenderRun::exists(const RenderFlags& picture) const {
@@ -168,6 +258,7 @@ std::string RenderRun::command_for(const RenderFlags& picture, const View& view,
                                    const PictureName& name) const {
   std::map<std::string, std::string> instead;
   if (plan_.times[0]) instead["--at"] = fmt::format("{}", *picture.import.time);
+  if (shows_motion_ && picture.run.fps) instead["--fps"] = fmt::format("{}", *picture.run.fps);
   if (plan_.all_variants) instead["--variant"] = name.variant;
   if (plan_.all_cameras) instead["--camera"] = view.is_of_scene ? view.label : "";
   if (view.side) instead["--frames"] = std::to_string(*view.side);
@@ -199,11 +290,13 @@ void RenderRun::count_done(size_t pictures) {
   scene_done_ += pictures;
 }
 
-PlaceInRun RenderRun::place() const {
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
+PlaceInRun RenderRun::place_in_run() const {
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - place_.start;
   const size_t left =
       scene_pictures_ - std::min(scene_pictures_, scene_done_) + scenes_left_ * scene_pictures_;
-  return {done_ + 1, done_ + std::max<size_t>(left, 1), rendered_, elapsed.count()};
+  const size_t before = place_.pictures_before + done_;
+  return {before + 1, before + std::max<size_t>(left, 1) + place_.pictures_after,
+          place_.rendered_before + rendered_, elapsed.count()};
 }
 
 }  // namespace vernier::apps

@@ -50,6 +50,15 @@ void add_run_flags(CLI::App& command, RunFlags& flags) {
   command.option_defaults()->group(group);
 }
 
+void add_jobs_flag(CLI::App& command, RunFlags& flags) {
+  command
+      .add_option("--jobs", flags.jobs,
+                  "render what each line of this file says: scenes and flags, beside those given here; - is "
+                  "standard input (docs/sequences.md)")
+      ->type_name("FILE")
+      ->group("Many pictures");
+}
+
 void add_preview_flags(CLI::App& command, RunFlags& flags) {
   command.add_flag("--draft", flags.draft, "a look at it: --spp 8 --denoise nlm, unless others are given");
   command
@@ -66,12 +75,18 @@ void add_preview_flags(CLI::App& command, RunFlags& flags) {
       ->type_name("NAME");
 }
 
-void check_run_flags(const RunFlags& flags, bool time_is_given) {
+void check_run_flags(const RunFlags& flags, const TimeFlags& others) {
   const auto refuse = [](const char* problem) { throw Error(ErrorKind::usage, problem); };
   if (flags.fps && flags.turntable)
     refuse("--fps means nothing to --turntable, whose pictures show one moment; --at picks it");
-  if (flags.fps && flags.frames.empty()) refuse("--fps needs --frames; without it --at takes seconds");
-  if (!flags.frames.empty() && time_is_given && !flags.turntable)
+  const bool has_neighbors = others.shows_motion && others.time_is_given;
+  if (flags.fps && flags.frames.empty() && !has_neighbors)
+    refuse("--fps needs --frames; without it --at takes seconds");
+  if (others.shows_motion && !others.time_is_given && flags.frames.empty() && !flags.turntable)
+    refuse(
+        "--aov motion is about the pictures before and after, and there are none; add --frames, --at or "
+        "--turntable");
+  if (!flags.frames.empty() && others.time_is_given && !flags.turntable)
     refuse("--frames and --at contradict each other: each says at what time the scene is posed");
 }
 

@@ -12,6 +12,7 @@ namespace vernier::apps {
 /// Which pictures a run of `vernier render` makes, and how it goes about it, as typed.
 struct RunFlags {
   std::vector<std::string> scenes;
+  std::string jobs;           ///< a list of command lines, each a run of its own; empty: none
   std::string frames;         ///< empty: none
   std::optional<double> fps;  ///< none: 24
   std::optional<int> turntable;
@@ -23,11 +24,19 @@ struct RunFlags {
 /// Declares the flags on `command`, but for the scenes.
 void add_run_flags(CLI::App& command, RunFlags& flags);
 
+/// Declares --jobs.
+void add_jobs_flag(CLI::App& command, RunFlags& flags);
+
 /// Declares what is done soon: --draft, --write-every, --format.
 void add_preview_flags(CLI::App& command, RunFlags& flags);
 
-/// Throws Error(usage) on flags that mean nothing beside each other; `time_is_given`: by --at.
-void check_run_flags(const RunFlags& flags, bool time_is_given);
+/// What else is asked for: a time by --at, and how things move between pictures.
+struct TimeFlags {
+  bool time_is_given = false, shows_motion = false;
+};
+
+/// Throws Error(usage) on flags that mean nothing beside each other.
+void check_run_flags(const RunFlags& flags, const TimeFlags& others);
 
 /// Seconds between pictures of a render that is not done yet; none: there are none. `on_terminal`: somebody
 /// is watching.

@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <map>
 
 #include "apps/vernier/checkpointing.h"
@@ -12,6 +15,7 @@
 #include "apps/vernier/picture_output.h"
 #include "core/base/atomic_file.h"
 #include "core/image/image_io.h"
+#include "integrators/render/layers.h"
 
 namespace vernier::apps {
 namespace {
@@ -126,10 +130,25 @@ void check_writable_files(const RenderFlags& picture, const FilePatterns& files)
   check(files.checkpoint, picture.checkpoint);
 }
 
+/// Hours may pass until a scene's turn comes. Nothing is opened, for a pipe can be read only once.
+void require_scenes(const RunPlan& plan) {
+  for (const std::string& scene : plan.scenes)
+    if (!is_standard_stream(scene) && ::access(scene.c_str(), R_OK) != 0)
+      throw Error(ErrorKind::input, scene, {}, fmt::format("cannot be read: {}", std::strerror(errno)));
+}
+
 }  // namespace
 
+bool shows_motion(const RenderFlags& flags) {
+  const std::vector<Layer> chosen = find_layers(flags.layers);
+  return std::any_of(chosen.begin(), chosen.end(),
+                     [](const Layer& l) { return l.need == LayerNeed::motion; });
+}
+
+double frame_seconds(const RunFlags& flags) { return 1 / flags.fps.value_or(default_fps); }
+
 RunPlan make_plan(const RenderFlags& flags) {
-  check_run_flags(flags.run, flags.import.time.has_value());
+  check_run_flags(flags.run, {flags.import.time.has_value(), shows_motion(flags)});
   RunPlan plan;
   plan.scenes = flags.run.scenes;
   plan.all_variants = flags.import.variant == all;
@@ -171,15 +190,27 @@ RenderFlags flags_for(const RenderFlags& flags, const RunPlan& plan, const std::
   return one;
 }
 
-void check_files(const RenderFlags& flags, const RunPlan& plan) {
-  std::vector<std::string> read = plan.scenes, written;
+std::vector<std::string> files_read(const RenderFlags& flags, const RunPlan& plan) {
+  std::vector<std::string> read = plan.scenes;
   read.insert(read.end(), {flags.surroundings.environment, flags.display.config, flags.background.file()});
+  for_each_picture(flags, plan, [&](const RenderFlags& picture) {
+    if (picture.resume != picture.checkpoint) read.push_back(picture.resume);
+  });
+  return read;
+}
+
+std::vector<std::string> files_written(const RenderFlags& flags, const RunPlan& plan) {
+  std::vector<std::string> written;
   for_each_picture(flags, plan, [&](const RenderFlags& picture) {
     written.insert(written.end(), picture.outputs.begin(), picture.outputs.end());
     written.insert(written.end(), {picture.stats, picture.report, picture.checkpoint});
-    if (picture.resume != picture.checkpoint) read.push_back(picture.resume);
   });
-  require_separate_files(read, written);
+  return written;
+}
+
+void check_files(const RenderFlags& flags, const RunPlan& plan) {
+  require_separate_files(files_read(flags, plan), files_written(flags, plan));
+  if (!flags.run.keep_going) require_scenes(plan);
   for_each_picture(flags, plan, [&](const RenderFlags& picture) {
     check_writable_files(picture, plan.files);
     require_resumable(picture);

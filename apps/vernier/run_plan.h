@@ -29,6 +29,12 @@ struct RunPlan {
   FilePatterns files;
 };
 
+/// Whether the pictures are compared with those before and after them. Throws Error(usage) on an unknown
+/// layer.
+bool shows_motion(const RenderFlags& flags);
+/// From one picture of an animation to the next.
+double frame_seconds(const RunFlags& flags);
+
 /// Throws Error(usage) when the flags contradict each other, when a placeholder has nothing to stand for, and
 /// when two pictures would be written to one file.
 RunPlan make_plan(const RenderFlags& flags);
@@ -37,8 +43,12 @@ RunPlan make_plan(const RenderFlags& flags);
 RenderFlags flags_for(const RenderFlags& all, const RunPlan& plan, const std::string& scene,
                       const PictureName& picture);
 
+/// What the run reads, and what it writes, as far as names are known before the scenes are read.
+std::vector<std::string> files_read(const RenderFlags& flags, const RunPlan& plan);
+std::vector<std::string> files_written(const RenderFlags& flags, const RunPlan& plan);
+
 /// Throws Error when a file cannot be written, would be written over one that is read, or is not there to go
-/// on from; as far as names are known before the scenes are read.
+/// on from; as far as names are known.
 void check_files(const RenderFlags& flags, const RunPlan& plan);
 
 }  // namespace vernier::apps

@@ -99,6 +99,7 @@ ExitCode run_serve(const ServeFlags& flags, const CLI::App& command) {
     throw Error(ErrorKind::usage,
                 "--panorama: there is nothing to turn in a picture of all around; leave it out");
   const ThreadLimit threads(flags.render.threads);
+  require_background(flags.render.background);
   HttpServer server(flags.host, flags.port);
 
   LiveScene scene(file, flags.render.import);

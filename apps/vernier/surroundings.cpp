@@ -4,8 +4,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 
 #include "apps/vernier/flags.h"
 #include "core/base/names.h"
@@ -34,8 +38,13 @@ Surroundings built_in(const BuiltInEnvironment& entry) {
   return {entry.name, std::move(environment), entry.turns_with_camera};
 }
 
+bool is_built_in(const std::string& name) {
+  const auto& all = built_in_environments();
+  return std::any_of(all.begin(), all.end(), [&](const auto& entry) { return entry.name == name; });
+}
+
 /// A word that is neither a name nor a file is more likely a misspelt name.
-std::shared_ptr<const Image> read_picture(const std::string& file) {
+void require_picture(const std::string& file) {
   std::error_code unknown;
   if (file.find_first_of("./") == std::string::npos && !std::filesystem::exists(file, unknown)) {
     const auto names = names_without_file();
@@ -44,7 +53,8 @@ std::shared_ptr<const Image> read_picture(const std::string& file) {
                 fmt::format("--env: '{}' is no file and none of {}{}", file, fmt::join(names, ", "),
                             nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
   }
-  return std::make_shared<const Image>(read_image(file));
+  if (!std::ifstream(file))
+    throw Error(ErrorKind::input, file, {}, fmt::format("cannot open image: {}", std::strerror(errno)));
 }
 
 /// Surroundings that turn with a camera, where its look takes them.
@@ -72,16 +82,35 @@ void add_surroundings_flags(CLI::App& command, SurroundingsFlags& flags) {
       ->type_name("S");
 }
 
-std::optional<Surroundings> read_surroundings(const SurroundingsFlags& flags) {
+std::shared_ptr<const Image> EnvironmentPictures::read(const std::string& file) {
+  const std::scoped_lock lock(mutex_);
+  std::weak_ptr<const Image>& kept = pictures_[file];
+  std::shared_ptr<const Image> picture = kept.lock();
+  if (!picture) kept = picture = std::make_shared<const Image>(read_image(file));
+  return picture;
+}
+
+void check_surroundings(const SurroundingsFlags& flags) {
   const bool changed = flags.rotate != 0 || flags.scale != 1;
   if (changed && (flags.environment.empty() || flags.environment == nothing))
     throw Error(ErrorKind::usage, "--env-rotate and --env-scale need --env studio, sky or FILE");
+  if (!flags.environment.empty() && flags.environment != nothing && !is_built_in(flags.environment))
+    require_picture(flags.environment);
+}
+
+std::optional<Surroundings> read_surroundings(const SurroundingsFlags& flags) {
+  EnvironmentPictures pictures;
+  return read_surroundings(flags, pictures);
+}
+
+std::optional<Surroundings> read_surroundings(const SurroundingsFlags& flags, EnvironmentPictures& pictures) {
+  check_surroundings(flags);
   if (flags.environment.empty()) return std::nullopt;
   if (flags.environment == nothing) return Surroundings{flags.environment, nullptr};
   for (const auto& entry : built_in_environments())
     if (entry.name == flags.environment) return turned_and_scaled(built_in(entry), flags);
   auto environment = std::make_shared<EnvironmentDescription>();
-  environment->picture = read_picture(flags.environment);
+  environment->picture = pictures.read(flags.environment);
   return turned_and_scaled({flags.environment, std::move(environment)}, flags);
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -34,7 +36,24 @@ struct Surroundings {
   bool turns_with_camera = false;
 };
 
+/// Pictures of surroundings, each decoded once for as long as somebody has it. For several threads at a time.
+class EnvironmentPictures {
+ public:
+  /// Throws Error(input).
+  std::shared_ptr<const Image> read(const std::string& file);
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, std::weak_ptr<const Image>> pictures_;
+};
+
+/// Throws Error when the flags contradict each other, or name what is neither there nor built in. Decodes no
+/// picture, so that this can be told before anything takes time.
+void check_surroundings(const SurroundingsFlags& flags);
+
 /// Those that the flags ask for; none when they leave it to the scene. Throws Error.
+std::optional<Surroundings> read_surroundings(const SurroundingsFlags& flags, EnvironmentPictures& pictures);
+/// The same where no others are read.
 std::optional<Surroundings> read_surroundings(const SurroundingsFlags& flags);
 /// Others, neither turned nor scaled, as the flags turn and scale them.
 Surroundings turned_and_scaled(const Surroundings& plain, const SurroundingsFlags& flags);

@@ -3,6 +3,7 @@
 
 #include "core/base/names.h"
 #include "core/base/parallel.h"
+#include "core/display/agx.h"
 #include "core/display/display_config.h"
 #include "vernier/error.h"
 
@@ -57,7 +58,7 @@ Image8 to_display(const Image& scene_linear, const DisplayOptions& options) {
   const auto& views = config.views();
   const std::string view = options.view.empty() ? views.front() : options.view;
   if (std::find(views.begin(), views.end(), view) == views.end()) throw_unknown_name("view", view, views);
-  const bool neutral = config.built_in() && view == "neutral";
+  const bool neutral = config.built_in() && view == "neutral", is_agx = config.built_in() && view == "AgX";
   const auto transform = config.transform(view);
 
   const float scale = std::exp2(options.exposure);
@@ -72,6 +73,7 @@ Image8 to_display(const Image& scene_linear, const DisplayOptions& options) {
       const float cover = has_alpha && value[3] > 0 ? value[3] : 1;
       for (int c = 0; c < 3; ++c) rgb[c] = usable(value[c], scale / cover);
       if (neutral) khronos_neutral(rgb);
+      if (is_agx) agx(rgb);
     }
     transform(pixels);
     for (int x = 0; x < scene_linear.width; ++x) {

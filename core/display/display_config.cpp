@@ -17,8 +17,8 @@ namespace ocio = OCIO_NAMESPACE;
 constexpr const char* linear_rec709 = "Linear Rec.709";
 
 // The matrix takes linear Rec.709 (D65) to ACES2065-1 (AP0, ACES white) with Bradford's adaptation, computed
-// from the chromaticities of ITU-R BT.709-6 and SMPTE ST 2065-1. The view called neutral is tone-mapped
-// before it comes here.
+// from the chromaticities of ITU-R BT.709-6 and SMPTE ST 2065-1. The views called neutral and AgX are
+// tone-mapped before they come here.
 constexpr const char* built_in_config = R"(ocio_profile_version: 2
 
 name: vernier
@@ -43,10 +43,11 @@ displays:
     - !<View> {name: ACES SDR, view_transform: ACES SDR, display_colorspace: sRGB - Display}
     - !<View> {name: standard, view_transform: Un-tone-mapped, display_colorspace: sRGB - Display}
     - !<View> {name: neutral, view_transform: Un-tone-mapped, display_colorspace: sRGB - Display}
+    - !<View> {name: AgX, view_transform: Un-tone-mapped, display_colorspace: sRGB - Display}
     - !<View> {name: raw, colorspace: Raw}
 
 active_displays: [sRGB]
-active_views: [ACES SDR, standard, neutral, raw]
+active_views: [ACES SDR, standard, neutral, AgX, raw]
 
 view_transforms:
   - !<ViewTransform>

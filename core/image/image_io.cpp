@@ -60,7 +60,8 @@ struct PlacedImage {
 PlacedImage read_picture(OIIO::ImageInput& input, const std::string& path) {
   const OIIO::ImageSpec spec = input.spec();
   Image stored(spec.width, spec.height, spec.nchannels);
-  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, stored.values.data()))
+  if (!input.read_image(input.current_subimage(), 0, 0, spec.nchannels, OIIO::TypeFloat,
+                        stored.values.data()))
     throw input_error(path, fmt::format("cannot decode image, it is damaged: {}", input.geterror()));
   if (std::strcmp(input.format_name(), "openexr") != 0 || spec.roi() == spec.roi_full()) return {stored, {}};
   const OIIO::ROI shown = OIIO::roi_intersection(spec.roi(), spec.roi_full());
@@ -72,6 +73,24 @@ PlacedImage read_picture(OIIO::ImageInput& input, const std::string& path) {
   if (shown == spec.roi_full()) return {std::move(part), {}};
   return {std::move(part),
           {shown.xbegin - spec.full_x, shown.ybegin - spec.full_y, spec.full_width, spec.full_height}};
+}
+
+// The other parts of an OpenEXR file as more channels of the picture. Other programs leave the name of a part
+// out of those of its channels; a part of another size is no layer of this picture.
+void append_parts(OIIO::ImageInput& input, const std::string& path, LayeredImage& picture) {
+  if (std::strcmp(input.format_name(), "openexr") != 0) return;
+  for (int part = 1; input.seek_subimage(part, 0); ++part) {
+    const PlacedImage more = read_picture(input, path);
+    const bool fits = more.image.width == picture.image.width && more.image.height == picture.image.height &&
+                      more.place.x == picture.place.x && more.place.y == picture.place.y;
+    if (!fits) continue;
+    const std::string name = input.spec().get_string_attribute("oiio:subimagename");
+    std::vector<std::string> names = input.spec().channelnames;
+    const auto& taken = picture.channel_names;
+    for (std::string& channel : names)
+      if (std::find(taken.begin(), taken.end(), channel) != taken.end()) channel = name + '.' + channel;
+    picture.append(more.image, names);
+  }
 }
 
 // Header texts that a picture may carry on to another file: not the layout of this one.
@@ -158,6 +177,7 @@ LayeredImage read_layers(const std::string& path, const ImageLimits& limits) {
   result.channel_names = spec.channelnames;
   result.metadata = texts(spec);
   result.linear = spec.format.is_floating_point();
+  append_parts(*input, path, result);
   return result;
 }
 

@@ -60,6 +60,8 @@ struct ExrOptions {
   bool half = false;  ///< R, G, B and A in 16 bits, values limited to +-largest_half; other channels keep 32
   std::string compression = "zip";  ///< by OpenImageIO's name, with a level after a colon where it has one
   PicturePlace place{};             ///< the data window in the display window
+  /// A part of the file for R, G, B and A, and one for each group of channels of one name before the dot.
+  bool multipart = false;
 };
 
 /// Writes float channels as OpenEXR. `channel_names` has image.channels entries ("R", "G", "B", "albedo.R",

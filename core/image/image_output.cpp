@@ -2,6 +2,8 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -58,6 +60,10 @@ void write_image(const std::string& path, const char* format, const OIIO::ImageS
     throw output_error(path, fmt::format("cannot write image: {}", output->geterror()));
 }
 
+bool is_color_or_alpha(const std::string& channel) {
+  return channel == "R" || channel == "G" || channel == "B" || channel == "A";
+}
+
 void set_metadata(OIIO::ImageSpec& spec, const Metadata& metadata, bool as_lines) {
   std::string lines;
   for (const auto& [name, value] : metadata) {
@@ -84,10 +90,6 @@ std::vector<unsigned char> encode(const std::string& path, const char* format, c
   OIIO::Filesystem::IOVecOutput memory(bytes);
   write_image(path, format, spec, image.values.data(), memory);
   return bytes;
-}
-
-bool is_color_or_alpha(const std::string& channel) {
-  return channel == "R" || channel == "G" || channel == "B" || channel == "A";
 }
 
 /// The values with those limited that are to be stored in 16 bits.
@@ -127,6 +129,115 @@ OIIO::ImageSpec exr_spec(const std::string& path, const Image& image,
   return spec;
 }
 
+/// One part of an OpenEXR file, by the numbers of its channels in the picture.
+struct Part {
+  std::string name;
+  std::vector<int> channels;
+};
+
+std::vector<Part> parts_of(const std::vector<std::string>& channel_names) {
+  std::vector<Part> parts;
+  for (size_t c = 0; c < channel_names.size(); ++c) {
+    const std::string& channel = channel_names[c];
+    const std::string name = is_color_or_alpha(channel) ? "rgba" : channel.substr(0, channel.rfind('.'));
+    const auto found =
+        std::find_if(parts.begin(), parts.end(), [&](const Part& part) { return part.name == name; });
+    if (found != parts.end())
+      found->channels.push_back(int(c));
+    else
+      parts.push_back({name, {int(c)}});
+  }
+  return parts;
+}
+
+/// The first part says all of the picture; mattes are also described where they are, for programs that look
+/// for them there (Cryptomatte 1.2: "cryptomatte/ID/name" is what their channels begin with).
+Metadata metadata_of(const Part& part, bool is_first, const Metadata& all) {
+  if (is_first) return all;
+  Metadata of_part;
+  for (const auto& [key, name] : all) {
+    if (!key.starts_with("cryptomatte/") || !key.ends_with("/name") || !part.name.starts_with(name)) continue;
+    const std::string prefix = key.substr(0, key.size() - std::string("name").size());
+    for (const auto& [other, value] : all)
+      if (other.starts_with(prefix)) of_part[other] = value;
+  }
+  return of_part;
+}
+
+Image channels_of(const Image& image, const std::vector<int>& channels) {
+  Image chosen(image.width, image.height, int(channels.size()));
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (size_t c = 0; c < channels.size(); ++c) chosen.pixel(x, y)[c] = image.pixel(x, y)[channels[c]];
+  return chosen;
+}
+
+/// A file without a name in any folder: OpenImageIO 2.4 takes no proxy for files of several parts.
+class MemoryFile {
+ public:
+  MemoryFile() : descriptor_(::memfd_create("vernier", MFD_CLOEXEC)) {}
+  ~MemoryFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  /// By which this process can open it; empty where there is none.
+  std::string name() const {
+    return descriptor_ < 0 ? std::string() : fmt::format("/proc/self/fd/{}", descriptor_);
+  }
+  void copy_to(OIIO::Filesystem::IOProxy& proxy) const {
+    std::vector<char> block(size_t(1) << 16);
+    for (off_t offset = 0;;) {
+      const ssize_t count = ::pread(descriptor_, block.data(), block.size(), offset);
+      if (count <= 0 || proxy.write(block.data(), size_t(count)) != size_t(count)) return;
+      offset += count;
+    }
+  }
+
+ private:
+  int descriptor_;
+};
+
+void write_parts(const std::string& path, const Image& image, const std::vector<std::string>& channel_names,
+                 const Metadata& metadata, const ExrOptions& options, OIIO::Filesystem::IOProxy& proxy) {
+  const std::vector<Part> parts = parts_of(channel_names);
+  std::vector<OIIO::ImageSpec> specs;
+  for (const Part& part : parts) {
+    std::vector<std::string> names;
+    for (const int c : part.channels) names.push_back(channel_names[size_t(c)]);
+    const bool is_first = specs.empty();
+    specs.push_back(exr_spec(path, channels_of(image, part.channels), names,
+                             metadata_of(part, is_first, metadata), options));
+    specs.back().attribute("oiio:subimagename", part.name);
+  }
+  const MemoryFile file;
+  const auto output = OIIO::ImageOutput::create("openexr");
+  if (!output || file.name().empty())
+    throw output_error(path,
+                       fmt::format("cannot write an OpenEXR file of several parts: {}", OIIO::geterror()));
+  bool is_well = output->open(file.name(), int(specs.size()), specs.data());
+  for (size_t i = 0; is_well && i < parts.size(); ++i) {
+    if (i > 0) is_well = output->open(file.name(), specs[i], OIIO::ImageOutput::AppendSubimage);
+    is_well =
+        is_well && output->write_image(OIIO::TypeFloat, channels_of(image, parts[i].channels).values.data());
+  }
+  if (!is_well || !output->close())
+    throw output_error(path, fmt::format("cannot write image: {}", output->geterror()));
+  file.copy_to(proxy);
+}
+
+void write_exr_to(const std::string& path, const Image& image, const std::vector<std::string>& channel_names,
+                  const Metadata& metadata, const ExrOptions& options, OIIO::Filesystem::IOProxy& proxy) {
+  const OIIO::ImageSpec spec = exr_spec(path, image, channel_names, metadata, options);
+  const Image half = options.half ? limited(image, channel_names) : Image();
+  const Image& values = options.half ? half : image;
+  if (options.multipart)
+    write_parts(path, values, channel_names, metadata, options, proxy);
+  else
+    write_image(path, "openexr", spec, values.values.data(), proxy);
+}
+
 // OpenImageIO's name of the format that a path's extension asks for; null when it is none of ours.
 const char* format_of(const std::string& path) {
   std::string extension = fs::path(path).extension().string();
@@ -141,12 +252,10 @@ const char* format_of(const std::string& path) {
 
 void write_exr(const std::string& path, const Image& image, const std::vector<std::string>& channel_names,
                const Metadata& metadata, const ExrOptions& options) {
-  const OIIO::ImageSpec spec = exr_spec(path, image, channel_names, metadata, options);
-  const Image half = options.half ? limited(image, channel_names) : Image();
   AtomicFile file(path);
   AtomicFileProxy proxy(path, file);
   try {
-    write_image(path, "openexr", spec, (options.half ? half : image).values.data(), proxy);
+    write_exr_to(path, image, channel_names, metadata, options, proxy);
   } catch (const Error&) {
     if (!file.has_failed()) throw;  // else commit() knows more than the library does
   }
@@ -155,12 +264,9 @@ void write_exr(const std::string& path, const Image& image, const std::vector<st
 
 std::vector<unsigned char> encode_exr(const Image& image, const std::vector<std::string>& channel_names,
                                       const Metadata& metadata, const ExrOptions& options) {
-  const std::string name = "picture";
-  const Image half = options.half ? limited(image, channel_names) : Image();
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
-  write_image(name, "openexr", exr_spec(name, image, channel_names, metadata, options),
-              (options.half ? half : image).values.data(), memory);
+  write_exr_to("picture", image, channel_names, metadata, options, memory);
   return bytes;
 }
 

@@ -20,7 +20,7 @@ namespace vernier {
 /// - "ACES SDR" (default): ACES 1.x output transform for 100-nit video, by OpenColorIO's built-in transform;
 /// - "standard": the sRGB transfer function, values above 1 clipped, no tone mapping;
 /// - "neutral": the Khronos PBR Neutral tone mapper, for faithful product colour, then as standard;
-/// - "raw": the values themselves.
+/// - "AgX": the base look of AgX, which takes the color of bright light; "raw": the values themselves.
 /// In a config of the user's, linear Rec.709 is the colour space of one of its customary names ("Linear
 /// Rec.709 (sRGB)", "Utility - Linear - sRGB", ...), else reached through the role aces_interchange, else
 /// taken to be the role scene_linear. Values that are not numbers become 0 and others are limited to +-65504,

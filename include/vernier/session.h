@@ -18,6 +18,17 @@ struct RenderResult;
 /// Whether the scene's own lights leave what the camera sees dark; a few thousand paths tell.
 VERNIER_API bool is_dark(const Scene& scene, const RenderSettings& settings);
 
+/// A scene as it stands at one time, and from where it is seen then.
+struct Moment {
+  std::shared_ptr<const Scene> scene;
+  CameraDescription camera;
+};
+
+/// The pictures before and after one, which the layer `motion` compares it with.
+struct Moments {
+  Moment previous, next;
+};
+
 /// One picture of a scene, rendered until its limits, and further when they grow. It prints nothing, has no
 /// globals and catches no signals; several may run at once, each called by one thread at a time. Rendering
 /// uses the threads of the calling thread's TBB arena. The same picture to the bit for any number of threads,
@@ -54,6 +65,9 @@ class VERNIER_API RenderSession {
   /// Goes on from such a file. Throws Error(input) when it is damaged or of another scene or other settings
   /// but for the limits. Tells whether it comes from another build or platform, whose last bits may differ.
   std::vector<Notice> load(const std::string& path);
+
+  /// For the layer `motion`, which is refused without. Their scenes are other poses of the same description.
+  void set_moments(Moments moments);
 
   RenderStatus status() const;
   /// R, G, B, scene-linear Rec.709, A if the background is transparent (colours multiplied by it), then the

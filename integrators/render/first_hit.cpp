@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrators/render/first_hit.h"
 
+#include "integrators/render/shadow.h"
+
 namespace vernier {
 
 constexpr uint32_t samples_looked_at = 8;  // of each half
@@ -10,8 +12,8 @@ FirstHits::FirstHits(const Scene& scene, const Camera& camera, const RenderSetti
     : scene_(scene), camera_(camera), options_(options), film_(film), camera_samples_(camera, options) {}
 
 FirstHits::Met FirstHits::sample(int x, int y, int half, uint32_t i) const {
-  const Ray ray = camera_samples_.get({options_.crop.x + x, options_.crop.y + y, half, i}).ray;
-  return {ray, intersect_from_camera(scene_, camera_segment(scene_, ray))};
+  const auto [sampler, ray] = camera_samples_.get({options_.crop.x + x, options_.crop.y + y, half, i});
+  return {ray, sampler, intersect_from_camera(scene_, camera_segment(scene_, ray))};
 }
 
 FirstHitMean FirstHits::mean(int x, int y) const {
@@ -20,7 +22,7 @@ FirstHitMean FirstHits::mean(int x, int y) const {
   for (int half = 0; half < Film::halves; ++half)
     for (uint32_t i = 0; i < std::min(samples_looked_at, film_.samples(x, y, half)); ++i) {
       ++count;
-      const auto [ray, hit] = sample(x, y, half, i);
+      const auto [ray, sampler, hit] = sample(x, y, half, i);
       if (!hit) continue;
       const Shading shading = shade(scene_, *hit, -ray.direction);
       sum.albedo += shading.albedo();
@@ -43,13 +45,24 @@ MetInstances FirstHits::met(int x, int y) const {
   return met;
 }
 
+Rgb FirstHits::lit(int x, int y) const {
+  ShadowSums sums;
+  for (int half = 0; half < Film::halves; ++half)
+    for (uint32_t i = 0; i < std::min(samples_looked_at, film_.samples(x, y, half)); ++i) {
+      const Met met = sample(x, y, half, i);
+      if (met.hit) sums.add(scene_, *met.hit, -met.ray.direction, met.sampler);
+    }
+  return sums.lit();
+}
+
 std::optional<FirstHit> FirstHits::at_center(int x, int y) const {
   const Ray ray = camera_.ray({float(options_.crop.x + x) + 0.5f, float(options_.crop.y + y) + 0.5f});
   const auto hit = intersect_from_camera(scene_, camera_segment(scene_, ray));
   if (!hit) return std::nullopt;
   const SceneGeometry& geometry = scene_.geometry();
-  return FirstHit{camera_.depth(ray, hit->t), hit->position, hit->instance,
-                  geometry.material_of(hit->instance), geometry.attributes(*hit).uv[0]};
+  return FirstHit{camera_.depth(ray, hit->t),          hit->position,  hit->instance,
+                  geometry.material_of(hit->instance), hit->primitive, {hit->u, hit->v},
+                  geometry.attributes(*hit).uv[0]};
 }
 
 }  // namespace vernier

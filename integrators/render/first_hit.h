@@ -21,11 +21,13 @@ struct FirstHitMean {
 
 /// What the ray through a pixel's centre, and that of the lens, meets first.
 struct FirstHit {
-  float depth = 0;    ///< metres along the camera's axis; from a panorama, along the ray
-  Vec3f position;     ///< world
-  uint32_t instance;  ///< number in the scene
-  uint32_t material;  ///< number in the scene
-  Vec2f uv;           ///< of the first texture coordinates that the material uses; zero where it uses none
+  float depth = 0;     ///< metres along the camera's axis; from a panorama, along the ray
+  Vec3f position;      ///< world
+  uint32_t instance;   ///< number in the scene
+  uint32_t material;   ///< number in the scene
+  uint32_t primitive;  ///< triangle of the instance
+  Vec2f barycentrics;
+  Vec2f uv;  ///< of the first texture coordinates that the material uses; zero where it uses none
 };
 
 /// The instances that a pixel's camera samples meet.
@@ -49,11 +51,15 @@ class FirstHits {
   /// The same samples, of each half at most the first 32.
   MetInstances met(int x, int y) const;
   std::optional<FirstHit> at_center(int x, int y) const;
+  /// Part of the lights' irradiance that nothing hides from what the samples of mean() meet; 1 where they
+  /// meet nothing.
+  Rgb lit(int x, int y) const;
 
  private:
   /// What sample i of a half meets.
   struct Met {
     Ray ray;
+    Sampler sampler;
     std::optional<Interaction> hit;
   };
   Met sample(int x, int y, int half, uint32_t i) const;

@@ -145,6 +145,22 @@ constexpr Layer table[] = {
        const Vec2f uv = p.center_hit ? p.center_hit->uv : Vec2f(0, 0);
        out[0] = uv.x, out[1] = uv.y;
      }},
+    {"shadow",
+     "part of the lights' irradiance on the first surface that nothing hides, mean over samples",
+     {"shadow.R", "shadow.G", "shadow.B"},
+     LayerNeed::shadow,
+     [](P p, float* out) { put(p.lit, out); }},
+    {"motion",
+     "pixels from what the pixel's centre shows to where it is in the pictures before and after",
+     {"Vector.X", "Vector.Y", "Vector.Z", "Vector.W", "forward.u", "forward.v", "backward.u", "backward.v"},
+     LayerNeed::motion,
+     [](P p, float* out) {
+       const auto [previous, next] = p.motion;
+       // As Cycles has its vectors: to the previous place, and from the next one. Zero has no sign.
+       const float values[] = {previous.x, previous.y, 0 - next.x, 0 - next.y,
+                               next.x,     next.y,     previous.x, previous.y};
+       std::copy(std::begin(values), std::end(values), out);
+     }},
     {"crypto_object",
      "Cryptomatte by the names of nodes",
      {"CryptoObject00.r", "CryptoObject00.g", "CryptoObject00.b", "CryptoObject00.a", "CryptoObject01.r",
@@ -221,7 +237,7 @@ void append_light(const RenderResult& result, std::span<const Layer> chosen, Lay
 
 /// Without a scene no layer may need it.
 LayeredImage assemble(const RenderResult& result, std::span<const Layer> chosen, const Scene* scene,
-                      const FirstHits* first_hits) {
+                      const FirstHits* first_hits, const MotionFinder* motion) {
   const Film& film = result.film;
   const auto ways = ways_of(result, chosen);
   LayeredImage picture;
@@ -235,7 +251,9 @@ LayeredImage assemble(const RenderResult& result, std::span<const Layer> chosen,
 
   const ErrorLayers error = any_needs(chosen, LayerNeed::error) ? error_layers(film) : ErrorLayers{};
   const bool needs_mean = any_needs(chosen, LayerNeed::mean_hit);
-  const bool needs_center = any_needs(chosen, LayerNeed::center_hit);
+  const bool needs_motion = any_needs(chosen, LayerNeed::motion);
+  const bool needs_center = needs_motion || any_needs(chosen, LayerNeed::center_hit);
+  const bool needs_shadow = any_needs(chosen, LayerNeed::shadow);
   const bool needs_mattes = any_needs(chosen, LayerNeed::mattes);
   const CryptomatteIds ids = needs_mattes ? CryptomatteIds(scene->names()) : CryptomatteIds();
   parallel_for(size_t(film.height()), [&](size_t row) {
@@ -248,6 +266,10 @@ LayeredImage assemble(const RenderResult& result, std::span<const Layer> chosen,
       }
       if (needs_mean) pixel.mean_hit = first_hits->mean(x, y);
       if (needs_center) pixel.center_hit = first_hits->at_center(x, y);
+      if (needs_motion && pixel.center_hit)
+        pixel.motion = motion->at({pixel.center_hit->instance, pixel.center_hit->primitive},
+                                  pixel.center_hit->barycentrics);
+      if (needs_shadow) pixel.lit = first_hits->lit(x, y);
       if (needs_mattes) pixel.met = first_hits->met(x, y), pixel.ids = &ids;
       float* out = picture.image.pixel(x, y);
       put(film.pixel(x, y), out);
@@ -279,10 +301,10 @@ std::vector<Layer> find_layers(const std::string& list) {
     begin = end + 1;
   }
   const auto is_asked = [&](const Layer& layer) {
-    const bool is_light = layer.need == LayerNeed::light;
+    const bool is_light = layer.need == LayerNeed::light, is_motion = layer.need == LayerNeed::motion;
     const bool is_way = is_light && layer.channel_count() > 0;
     return std::any_of(names.begin(), names.end(), [&](std::string_view name) {
-      return name == layer.name || (name == "all" && !is_light) || (name == "light" && is_way);
+      return name == layer.name || (name == "all" && !is_light && !is_motion) || (name == "light" && is_way);
     });
   };
   std::vector<Layer> found;
@@ -298,9 +320,14 @@ std::vector<std::string> light_ways_of(std::span<const Layer> chosen) {
 }
 
 LayeredImage with_layers(const RenderResult& result, std::span<const Layer> chosen, const Scene& scene,
-                         const Camera& camera, const RenderSettings& options) {
+                         const Camera& camera, const RenderSettings& options, const Moments* moments) {
   const FirstHits first_hits(scene, camera, options, result.film);
-  return assemble(result, chosen, &scene, &first_hits);
+  std::optional<MotionFinder> motion;
+  if (moments) motion.emplace(scene, camera, *moments, options.width, options.height);
+  if (!motion && any_needs(chosen, LayerNeed::motion))
+    throw Error(ErrorKind::usage, {}, "motion",
+                "compares a picture with those before and after it, which RenderSession::set_moments tells");
+  return assemble(result, chosen, &scene, &first_hits, motion ? &*motion : nullptr);
 }
 
 std::vector<Layer> find_film_layers(const std::string& list) {
@@ -316,7 +343,7 @@ std::vector<Layer> find_film_layers(const std::string& list) {
 }
 
 LayeredImage with_film_layers(const RenderResult& result, std::span<const Layer> chosen) {
-  return assemble(result, chosen, nullptr, nullptr);
+  return assemble(result, chosen, nullptr, nullptr, nullptr);
 }
 
 }  // namespace vernier

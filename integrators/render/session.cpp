@@ -84,6 +84,7 @@ class RenderSession::State {
   }
 
   const std::shared_ptr<const Scene> scene;
+  std::optional<Moments> moments;
   RenderSettings settings;
   const std::unique_ptr<Integrator> integrator;
   const Camera camera;
@@ -207,6 +208,11 @@ std::vector<Notice> RenderSession::load(const std::string& path) {
   return notices;
 }
 
+void RenderSession::set_moments(Moments moments) {
+  const Use use(state_->user);
+  state_->moments = std::move(moments);
+}
+
 RenderStatus RenderSession::status() const {
   const Use use(state_->user);
   return status_of(state_->render.so_far);
@@ -216,7 +222,8 @@ LayeredImage RenderSession::picture(const std::string& layers) const {
   const Use use(state_->user);
   const RenderResult& so_far = state_->render.so_far;
   const RenderSettings& settings = state_->settings;
-  LayeredImage picture = with_layers(so_far, find_layers(layers), *state_->scene, state_->camera, settings);
+  LayeredImage picture = with_layers(so_far, find_layers(layers), *state_->scene, state_->camera, settings,
+                                     state_->moments ? &*state_->moments : nullptr);
   if (settings.crop.width > 0)
     picture.place = {settings.crop.x, settings.crop.y, settings.width, settings.height};
   picture.metadata.merge(result_metadata(so_far));

@@ -33,7 +33,7 @@ TEST(LayersOfAFile, EveryChannelIsThere) {
   EXPECT_EQ(file.place.y, 5);
   EXPECT_EQ(file.place.full_width, 24);
   for (const Layer& layer : layers())
-    for (int c = 0; c < layer.channel_count(); ++c)
+    for (int c = 0; c < layer.channel_count() && layer.need != LayerNeed::motion; ++c)
       EXPECT_TRUE(file.single(std::string(layer.channels[size_t(c)]))) << layer.channels[size_t(c)];
   const Image counts = *file.single("samples");
   double samples = 0;
@@ -51,6 +51,28 @@ TEST(LayersOfAFile, SameForAnyNumberOfThreads) {
     images.push_back(read_layers(folder.file("a.exr")).image);
   }
   EXPECT_EQ(images[0].values, images[1].values);
+}
+
+TEST(LayersOfAFile, ArePartsOfAFileWhereThatIsAsked) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> aov{"--spp", "4", "--aov", "all", "--crop", "10x8+4+5", "-o"};
+  const auto make = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = aov;
+    arguments.push_back(folder.file(name));
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(render(arguments).exit_code, 0);
+    return read_layers(folder.file(name));
+  };
+  const LayeredImage flat = make("flat.exr", {}), parts = make("parts.exr", {"--multipart"});
+  EXPECT_EQ(parts.channel_names.size(), flat.channel_names.size());
+  for (const std::string& channel : flat.channel_names) {
+    ASSERT_TRUE(parts.single(channel)) << channel;
+    EXPECT_EQ(parts.single(channel)->values, flat.single(channel)->values) << channel;
+  }
+  EXPECT_EQ(parts.place.x, 4);
+  EXPECT_EQ(parts.metadata.at("vernier:samplesPerPixel"), "4");
+  EXPECT_THAT(render({"--multipart", "-o", folder.file("a.png")}).err,
+              HasSubstr("--multipart: is about .exr files"));
 }
 
 TEST(LayersOfAFile, CanBeListed) {

@@ -71,6 +71,50 @@ TEST_F(Sequence, TurntableDecidesAboutSurroundingsAsSingleRendersDo) {
   EXPECT_EQ(bytes("t.02.exr"), bytes("single.exr"));
 }
 
+// The triangle moves a metre a second, at 4 frames a second and 4 pixels a metre.
+TEST_F(Sequence, MotionIsInPixelsFromFrameToFrame) {
+  const std::vector<std::string> layer{"--aov", "motion,id", "--look-from", "0,0,5", "--look-at",
+                                       "0,0,0", "--ortho",   "4",           "--fps", "4"};
+  const auto with_layer = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), layer.begin(), layer.end());
+    return arguments;
+  };
+  make(with_layer({scene_, "--frames", "0-2", "-o", folder_.file("f.#####.exr")}));
+  const LayeredImage first = read_layers(folder_.file("f.00000.exr")),
+                     second = read_layers(folder_.file("f.00001.exr"));
+  const auto expect = [](const LayeredImage& picture, const char* channel, float moving) {
+    const Image id = *picture.single("id"), motion = *picture.single(channel);
+    size_t seen = 0;
+    for (size_t i = 0; i < id.values.size(); ++i) {
+      EXPECT_NEAR(motion.values[i], id.values[i] == 1 ? moving : 0, 1e-4) << channel;
+      seen += id.values[i] == 1;
+    }
+    EXPECT_GT(seen, 0u);
+  };
+  for (const auto& [channel, moving] : {std::pair("Vector.X", -1.f),
+                                        {"Vector.Y", 0.f},
+                                        {"Vector.Z", -1.f},
+                                        {"Vector.W", 0.f},
+                                        {"forward.u", 1.f},
+                                        {"forward.v", 0.f},
+                                        {"backward.u", -1.f}})
+    expect(second, channel, moving);
+  expect(first, "backward.u", 0);  // before the animation it stands still
+  expect(first, "forward.u", 1);
+  make(with_layer({scene_, "--at", "0.25", "-o", folder_.file("single.exr")}));
+  EXPECT_EQ(bytes("f.00001.exr"), bytes("single.exr"));
+}
+
+TEST_F(Sequence, MotionOfATurntableIsThatOfItsCamera) {
+  make({scene_, "--turntable", "4", "--ortho", "4", "--aov", "motion", "-o", folder_.file("t.##.exr")});
+  const LayeredImage picture = read_layers(folder_.file("t.01.exr"));
+  const Image motion = *picture.single("forward.u");
+  EXPECT_GT(std::abs(*std::max_element(motion.values.begin(), motion.values.end())), 0.1);
+  make({scene_, "--turntable", "4", "--frames", "1", "--ortho", "4", "--aov", "motion", "-o",
+        folder_.file("single.exr")});
+  EXPECT_EQ(bytes("t.01.exr"), bytes("single.exr"));
+}
+
 TEST_F(Sequence, TimeBeyondTheAnimationIsSaidOnce) {
   const ProcessResult result =
       render({scene_, "--frames", "1-4", "--fps", "2", "-o", folder_.file("f.####.png")});
@@ -238,6 +282,7 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{{"-o", "/f.##.png", "--frames", "-3"}, "'-3' is no frame"},
         Misuse{{"-o", "/f.##.png", "--frames", "1-2", "--at", "1"},
                "--frames and --at contradict each other"},
+        Misuse{{"-o", "/f.exr", "--aov", "motion"}, "add --frames, --at or --turntable"},
         Misuse{{"-o", "/f.png", "--fps", "25"}, "--fps needs --frames"},
         Misuse{{"-o", "/f.##.png", "--turntable", "4", "--fps", "25"}, "--fps means nothing to --turntable"},
         Misuse{{"-o", "/f.##.png", "--turntable", "4", "--frames", "0-4"}, "has pictures 1 to 4, not 0"},

@@ -61,7 +61,7 @@ std::string error_of(ErrorKind kind, const Action& action) {
 }
 
 TEST_F(Display, BuiltInViewsWithTheDefaultFirst) {
-  EXPECT_THAT(display_views({}), ElementsAre("ACES SDR", "standard", "neutral", "raw"));
+  EXPECT_THAT(display_views({}), ElementsAre("ACES SDR", "standard", "neutral", "AgX", "raw"));
 }
 
 TEST_F(Display, RawIsTheValueItself) {
@@ -136,6 +136,38 @@ TEST_F(Display, NeutralKeepsBaseColourAndCompressesHighlights) {
   EXPECT_EQ(shown.pixel(2, 0)[0], 255);
 }
 
+// A polynomial that web viewers take for AgX's curve (Wrensch 2023, "Minimal AgX Implementation"), of greys,
+// whose colour no matrix changes.
+double agx_of_grey(double value) {
+  const double x = std::clamp((std::log2(std::max(value, 1e-10)) + 12.47393) / 16.5, 0.0, 1.0);
+  const double x2 = x * x, x4 = x2 * x2;
+  const double y =
+      15.5 * x4 * x2 - 40.14 * x4 * x + 31.96 * x4 - 6.868 * x2 * x + 0.4298 * x2 + 0.1191 * x - 0.00232;
+  return std::pow(std::max(y, 0.0), 2.2);
+}
+
+TEST_F(Display, AgxOfGreysIsWhatOthersHave) {
+  std::vector<float> values;
+  for (int i = 0; i < 300; ++i) values.push_back(std::exp2(float(i) / 20 - 11));
+  const Image8 shown = to_display(grey_image(values), {.view = "AgX"});
+  for (int x = 0; x < shown.width; ++x) {
+    const auto rgb = bytes_at(shown, x);
+    EXPECT_NEAR(rgb[0], rgb[1], 1) << values[size_t(x)];
+    EXPECT_NEAR(rgb[2], rgb[1], 1) << values[size_t(x)];
+    EXPECT_NEAR(rgb[1], srgb_encode(agx_of_grey(values[size_t(x)])) * 255, 3) << values[size_t(x)];
+    EXPECT_GE(rgb[1], shown.pixel(std::max(0, x - 1), 0)[1]) << values[size_t(x)];
+  }
+}
+
+TEST_F(Display, AgxTakesTheColourOfBrightLight) {
+  Image image(2, 1, 3);
+  image.values = {0.1f, 0.01f, 0.01f, 50, 5, 5};
+  const Image8 shown = to_display(image, {.view = "AgX"});
+  const auto dim = bytes_at(shown, 0), bright = bytes_at(shown, 1);
+  EXPECT_GT(dim[0], 1.5 * dim[1]);
+  EXPECT_LT(bright[0], 1.2 * bright[1]);
+}
+
 TEST_F(Display, AcesIsMonotoneNeutralAndPlausible) {
   std::vector<float> values{0};
   for (int i = 0; i < 600; ++i) values.push_back(std::exp2(float(i) / 30 - 12));
@@ -157,7 +189,7 @@ TEST_F(Display, ExposureIsInStops) {
   const auto values = ramp(0, 0.2f, 100);
   auto doubled = values;
   for (float& value : doubled) value *= 4;
-  for (const char* view : {"ACES SDR", "standard", "neutral", "raw"})
+  for (const char* view : {"ACES SDR", "standard", "neutral", "AgX", "raw"})
     EXPECT_EQ(to_display(grey_image(values), {.view = view, .exposure = 2}).values,
               to_display(grey_image(doubled), {.view = view}).values);
 }
@@ -166,7 +198,7 @@ TEST_F(Display, NotFiniteValuesAreSafe) {
   const float inf = std::numeric_limits<float>::infinity(), nan = std::nanf(""), big = 3e38f;
   Image image(5, 1, 3);
   image.values = {nan, nan, nan, inf, inf, inf, -inf, -inf, -inf, big, big, big, inf, nan, -inf};
-  for (const char* view : {"ACES SDR", "standard", "neutral", "raw"}) {
+  for (const char* view : {"ACES SDR", "standard", "neutral", "AgX", "raw"}) {
     SCOPED_TRACE(view);
     const Image8 shown = to_display(image, {.view = view, .exposure = 10});
     EXPECT_EQ(bytes_at(shown, 0), (std::array<uint8_t, 3>{0, 0, 0}));
@@ -178,9 +210,9 @@ TEST_F(Display, NotFiniteValuesAreSafe) {
 }
 
 TEST_F(Display, UnknownViewListsTheViews) {
-  EXPECT_THAT(
-      error_of(ErrorKind::usage, [] { to_display(grey_image({0}), {.view = "standart"}); }),
-      testing::AllOf(HasSubstr("did you mean 'standard'"), HasSubstr("ACES SDR, standard, neutral, raw")));
+  EXPECT_THAT(error_of(ErrorKind::usage, [] { to_display(grey_image({0}), {.view = "standart"}); }),
+              testing::AllOf(HasSubstr("did you mean 'standard'"),
+                             HasSubstr("ACES SDR, standard, neutral, AgX, raw")));
 }
 
 // A config whose reference is `reference` and whose only view halves the values it is given in that

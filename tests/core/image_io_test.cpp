@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/image/image_io.h"
 
+#include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -302,6 +303,35 @@ TEST(ImageIo, EveryTruncationIsAnError) {
     const std::string cut = folder.write("cut.exr", whole.substr(0, size));
     EXPECT_THROW(read_image(cut), Error) << "cut to " << size;
   }
+}
+
+TEST(ImageIo, PartsOfOpenExrAreGroupsOfChannels) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> names{"R", "G", "B", "A", "Z", "N.X", "N.Y", "N.Z", "CryptoObject00.r"};
+  const Image image = hdr_ramp(5, 4, int(names.size()));
+  ExrOptions options;
+  options.multipart = true;
+  write_exr(folder.file("a.exr"), image, names,
+            {{"vernier:spp", "3"}, {"cryptomatte/1/name", "CryptoObject"}, {"cryptomatte/1/hash", "h"}},
+            options);
+  const auto input = OIIO::ImageInput::open(folder.file("a.exr"));
+  ASSERT_TRUE(input);
+  const std::vector<std::pair<std::string, int>> expected{
+      {"rgba", 4}, {"Z", 1}, {"N", 3}, {"CryptoObject00", 1}};
+  for (size_t part = 0; part < expected.size(); ++part) {
+    ASSERT_TRUE(input->seek_subimage(int(part), 0));
+    const OIIO::ImageSpec spec = input->spec();
+    EXPECT_EQ(spec.get_string_attribute("oiio:subimagename"), expected[part].first);
+    EXPECT_EQ(spec.nchannels, expected[part].second);
+    EXPECT_EQ(spec.get_string_attribute("vernier:spp"), part == 0 ? "3" : "");
+    EXPECT_EQ(spec.get_string_attribute("cryptomatte/1/hash"), part == 0 || part == 3 ? "h" : "");
+  }
+  EXPECT_FALSE(input->seek_subimage(int(expected.size()), 0));
+  const LayeredImage read = read_layers(folder.file("a.exr"));
+  EXPECT_EQ(read.channel_names, names);
+  EXPECT_EQ(read.image.values, image.values);
+  EXPECT_EQ(encode_exr(image, names, {}, options).empty(), false);
+  EXPECT_THAT(folder.names(), testing::ElementsAre("a.exr"));
 }
 
 TEST(ImageIo, DamagedBytesNeverCrash) {

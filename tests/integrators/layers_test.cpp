@@ -38,7 +38,7 @@ class Layers : public testing::Test {
     const auto integrator = path({});
     options_.light_split.ways = light_ways_of(find_layers(list));
     const RenderResult result = render(scene_, camera, *integrator, options_, stop);
-    return with_layers(result, find_layers(list), scene_, camera, options_);
+    return with_layers(result, find_layers(list), scene_, camera, options_, &moments_);
   }
 
   const Scene scene_ = two_walls();
@@ -48,6 +48,9 @@ class Layers : public testing::Test {
     return camera;
   }();
   RenderSettings options_;
+  /// Everything stands still, unless a test says otherwise.
+  Moments moments_{{{std::shared_ptr<const Scene>(), &scene_}, view_},
+                   {{std::shared_ptr<const Scene>(), &scene_}, view_}};
 };
 
 TEST_F(Layers, FirstHitsAreWhatIsThere) {
@@ -110,7 +113,7 @@ TEST_F(Layers, HalvesAreTwoPicturesWithThatMean) {
 TEST_F(Layers, EveryLayerAloneIsThatOfAll) {
   options_.limits.spp = 40;
   options_.adaptive = true;
-  const LayeredImage all = picture("all,light");
+  const LayeredImage all = picture("all,light,motion");
   EXPECT_EQ(picture("").channel_names, (std::vector<std::string>{"R", "G", "B"}));
   EXPECT_EQ(picture("").image.values, all.rgb().values);
   for (const Layer& layer : layers()) {

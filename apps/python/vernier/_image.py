@@ -167,8 +167,8 @@ class Image:
         """(height, width, 3) uint8, or 4 with straight alpha: what a .png file shows.
 
         Args:
-            view: "ACES SDR", "standard", "neutral", "raw", or as much of such a name as is needed; None: the first, but
-                raw for the data of raycast.
+            view: "ACES SDR", "standard", "neutral", "AgX", "raw", or as much of such a name as is needed; None: the first,
+                but raw for the data of raycast.
             exposure: stops; values are multiplied by 2^exposure first.
             ocio: an OpenColorIO config file; none: $OCIO, else the built-in config.
         """
