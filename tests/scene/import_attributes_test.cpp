@@ -42,8 +42,7 @@ TEST(ImportAttributes, AnyTwoSetsOfTextureCoordinatesAreRead) {
         with_sets({0, 1, 2, 3, 5, 7}, {{"pbrMetallicRoughness", {{"baseColorTexture", use(base)}}},
                                        {"emissiveFactor", {1, 1, 1}},
                                        {"normalTexture", use(normal)}});
-    const GltfFile readable = file;
-    const SceneDescription scene = readable.import();
+    const SceneDescription scene = file.import();
     const MaterialDescription& m = scene.materials.at(0);
     EXPECT_EQ(read_by(scene, m.base_color_texture), float(base + 1)) << base << " " << normal;
     EXPECT_FALSE(has_notice(scene, "sets of texture coordinates"));
