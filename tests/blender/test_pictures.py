@@ -190,6 +190,29 @@ class Passes(unittest.TestCase):
         self.assertEqual(channels[f"{name}.Depth.Z"][0, 0], numpy.float32(1e10))
 
 
+    def test_cryptomatte_is_read_by_the_compositor(self):
+        scene = pictures.new_scene()
+        pictures.add_lamp("SUN", energy=3, angle=0)
+        for x, name in ((-1, "Left"), (1, "Right")):
+            pictures.add_cube(1, (x, 0, 0)).name = name
+        layer = scene.view_layers[0]
+        layer.use_pass_cryptomatte_object = True
+        channels = pictures.rendered(scene, multilayer=True)
+        self.assertIn(f"{layer.name}.CryptoObject02.a", {name.replace(".A", ".a") for name in channels})
+        scene.use_nodes = scene.render.use_compositing = True
+        nodes, links = scene.node_tree.nodes, scene.node_tree.links
+        nodes.clear()
+        matte, output = nodes.new("CompositorNodeCryptomatteV2"), nodes.new("CompositorNodeComposite")
+        matte.scene = scene
+        matte.layer_name = f"{layer.name}.CryptoObject"
+        matte.matte_id = "Left"
+        links.new(nodes.new("CompositorNodeRLayers").outputs["Image"], matte.inputs["Image"])
+        links.new(matte.outputs["Matte"], output.inputs["Image"])
+        seen = pictures.colors(pictures.rendered(scene))[16, :, 0]
+        left, right = 24 - 12, 24 + 12  # a metre is twelve pixels
+        self.assertEqual((seen[left], seen[24], seen[right]), (1, 0, 0))
+        self.assertAlmostEqual(seen.sum(), 12 * 10 / 9.5, delta=0.7)
+
     def test_object_index(self):
         scene = pictures.new_scene()
         pictures.add_lamp("POINT", (3, -2, 8), energy=2000, shadow_soft_size=0.5)

@@ -11,10 +11,10 @@ import bpy
 
 from . import command
 from .command import Outcome, RenderError, Watcher
-from .exr import ExrError, read_channels
+from .exr import ExrError, read_picture
 from .export_session import ExportError, session_for
 from .line_process import Stopped
-from .passes import Pass, add_pass_indices, as_pixels, combined, wanted_passes
+from .passes import Pass, add_pass_indices, as_pixels, combined, cryptomatte_fields, wanted_passes
 from .settings import find_program
 
 
@@ -113,11 +113,13 @@ class _Picture:
         if not os.path.exists(self._output):
             raise Stopped  # before there was a sample
         result = self._begin()
-        self._fill(result)
+        texts = self._fill(result)
         state = {"samples_per_pixel": outcome.samples_per_pixel, **(outcome.error or {})}
         text = command.describe_state(state)
         self._engine.end_result(result)
-        self._engine.get_result().stamp_data_add_field(f"Vernier.{self._layer.name}", text)
+        fields = {f"Vernier.{self._layer.name}": text, **cryptomatte_fields(texts, self._layer.name)}
+        for name, value in fields.items():
+            self._engine.get_result().stamp_data_add_field(name, value)
         # Blender forgets the state at the end; this stays in its status bar and log, or goes to the terminal.
         self._engine.report({"INFO"}, f"Vernier: {text}")
         self._tell(outcome.notes)
@@ -125,14 +127,16 @@ class _Picture:
     def _begin(self):
         return self._engine.begin_result(0, 0, *self._part, layer=self._layer.name)
 
-    def _fill(self, result) -> None:
-        planes = read_channels(self._output)
+    def _fill(self, result) -> dict[str, str]:
+        """Returns the texts of the picture's header."""
+        planes, texts = read_picture(self._output)
         add_pass_indices(planes, self._pass_indices)
         passes = result.layers[0].passes
         _put(passes["Combined"], combined(planes))
         for entry in self._passes:
             if entry.name in passes:
                 _put(passes[entry.name], entry.read(planes))
+        return texts
 
     def _tell(self, notes: list[str]) -> None:
         for note in notes:

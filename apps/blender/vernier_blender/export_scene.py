@@ -36,20 +36,24 @@ class SceneExporter:
         width, height = request["size"]
         view = frame_of(width, height, collected.camera.projection, self._border)
         path = os.path.join(folder, f"{request['name']}.gltf")
-        indices = self._write_meshes(collected, path)
+        placed = self._write_meshes(collected, path)
         has_flat_lamps = any(lamp.kind == "AREA" for lamp in collected.lamps)
         gltf = _completed(path, collected, view, radiance_of_watt(folder) if has_flat_lamps else 0)
+        # Beside the objects that they show, those on the stage have names of their own.
+        shown = [placed.get(name) for name in gltf.names_of_objects()]
+        gltf.rename_nodes({name: mesh.name for name, mesh in placed.items()})
+        gltf.save()
         world = self._world.picture(folder, frame)
         return {"scene": path, "flags": _flags(collected, view, world),
                 "part": [view.part_width, view.part_height],
-                "pass_indices": [indices.get(name, 0) for name in gltf.names_of_objects()],
+                "pass_indices": [mesh.pass_index if mesh else 0 for mesh in shown],
                 "notes": sorted(notes)}
 
-    def _write_meshes(self, collected: Collected, path: str) -> dict[str, int]:
+    def _write_meshes(self, collected: Collected, path: str) -> dict[str, PlacedMesh]:
         """Puts the meshes on a stage of their own, each where it stands, and has the exporter write that. Returns
-        their pass indices by their names in the file."""
+        them by their names in the file."""
         objects = [_stage_object(placed) for placed in collected.meshes]
-        indices = {thing.name: thing.pass_index for thing in objects}
+        by_name = {thing.name: placed for thing, placed in zip(objects, collected.meshes)}
         for thing in objects:
             self._stage.collection.objects.link(thing)
         try:
@@ -58,7 +62,7 @@ class SceneExporter:
         finally:
             bpy.context.window.scene = self._scene
             bpy.data.batch_remove({*objects, *(thing.data for thing in objects)})
-        return indices
+        return by_name
 
 
 # Poses, modifiers and visibility are those of the meshes already; lamps and the camera are the add-on's own.
@@ -75,7 +79,6 @@ def _stage_object(placed: PlacedMesh) -> bpy.types.Object:
     size = max(max(abs(value) for value in row) for row in matrix)
     is_sheared = max(abs(a - b) for p, q in zip(matrix, rest) for a, b in zip(p, q)) > 1e-5 * size
     thing = bpy.data.objects.new(placed.name, placed.mesh.copy() if is_sheared else placed.mesh)
-    thing.pass_index = placed.pass_index
     if is_sheared:
         thing.data.transform(matrix)
     else:
@@ -92,7 +95,6 @@ def _completed(path: str, collected: Collected, view: Frame, watt: float) -> Glt
     add_lamps(collected.lamps, gltf, watt)
     entry = {"name": camera.name, **view.camera(camera.projection.is_orthographic)}
     gltf.add_node(camera.name, camera.matrix, {"camera": gltf.add("cameras", entry)})
-    gltf.save()
     return gltf
 
 

@@ -20,10 +20,16 @@ class ExrError(Exception):
 
 def read_channels(path: str) -> dict[str, numpy.ndarray]:
     """The channels by name, each (height, width), the top line first."""
+    return read_picture(path)[0]
+
+
+def read_picture(path: str) -> tuple[dict[str, numpy.ndarray], dict[str, str]]:
+    """The channels, and the texts of the header by name."""
     with open(path, "rb") as file:
         data = file.read()
     try:
-        return _Reader(path, data).channels()
+        reader = _Reader(path, data)
+        return reader.channels(), reader.texts()
     except (struct.error, zlib.error, KeyError, ValueError, IndexError) as problem:
         raise ExrError(f"{path}: not an OpenEXR file as Vernier writes it: {problem}") from problem
 
@@ -35,7 +41,12 @@ class _Reader:
         if magic != 20000630 or version & ~0x400 != 2:
             raise ExrError(f"{path}: not an OpenEXR file of scanlines in one part")
         self._data = data
-        self._attributes, self._offset = self._read_header()
+        self._attributes: dict[str, bytes] = {}
+        self._texts: dict[str, str] = {}
+        self._offset = self._read_header()
+
+    def texts(self) -> dict[str, str]:
+        return self._texts
 
     def channels(self) -> dict[str, numpy.ndarray]:
         left, top, right, bottom = struct.unpack("<4i", self._attributes["dataWindow"])
@@ -55,15 +66,19 @@ class _Reader:
             pixels[first:first + count] = numpy.frombuffer(raw, dtype="<f4").reshape(count, len(names), width)
         return {name: pixels[:, index] for index, name in enumerate(names)}
 
-    def _read_header(self) -> tuple[dict[str, bytes], int]:
-        attributes, at = {}, 8
+    def _read_header(self) -> int:
+        """Where it ends."""
+        at = 8
         while self._data[at]:
             name, at = self._text(at)
-            _, at = self._text(at)
+            kind, at = self._text(at)
             (size,) = struct.unpack_from("<i", self._data, at)
-            attributes[name] = self._data[at + 4:at + 4 + size]
+            value = self._data[at + 4:at + 4 + size]
+            self._attributes[name] = value
+            if kind == "string":
+                self._texts[name] = value.decode(errors="replace")
             at += 4 + size
-        return attributes, at + 1
+        return at + 1
 
     def _text(self, at: int) -> tuple[str, int]:
         end = self._data.index(b"\0", at)

@@ -34,6 +34,11 @@ class GltfFile:
         return [node.get("name", "") for node in nodes if "mesh" in node
                 for _ in self.document["meshes"][node["mesh"]]["primitives"]]
 
+    def rename_nodes(self, names: dict[str, str]) -> None:
+        for node in self.document.get("nodes", []):
+            if node.get("name") in names:
+                node["name"] = names[node["name"]]
+
     def add(self, table: str, entry: dict) -> int:
         """Appends to one of the document's arrays; returns the entry's index."""
         entries = self.document.setdefault(table, [])

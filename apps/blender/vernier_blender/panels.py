@@ -91,6 +91,10 @@ class VERNIER_PT_passes(_Panel, bpy.types.Panel):
             column.prop(layer, name)
         for name in ("use_pass_error", "use_pass_albedo", "use_pass_samples"):
             column.prop(layer.vernier, name)
+        column = layout.column(heading="Cryptomatte", align=True)
+        for name, text in (("object", "Object"), ("material", "Material"), ("asset", "Asset")):
+            column.prop(layer, f"use_pass_cryptomatte_{name}", text=text)
+        layout.prop(layer, "pass_cryptomatte_depth", text="Levels")
 
 
 _CLASSES = (VERNIER_PT_sampling, VERNIER_PT_light_paths, VERNIER_PT_film, VERNIER_PT_performance,
