@@ -35,7 +35,8 @@ struct Pipe {
   dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
   dup2(out.ends[1], STDOUT_FILENO);
   dup2(err.ends[1], STDERR_FILENO);
-  // A test run in the background of a script starts with these ignored.
+  // A test run in the background, of a script or by nohup, starts with these ignored.
+  std::signal(SIGHUP, SIG_DFL);
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
   execv(arguments[0], arguments.data());
