@@ -88,7 +88,7 @@ void append_parts(OIIO::ImageInput& input, const std::string& path, LayeredImage
     std::vector<std::string> names = input.spec().channelnames;
     const auto& taken = picture.channel_names;
     for (std::string& channel : names)
-      if (std::find(taken.begin(), taken.end(), channel) != taken.end()) channel = name + '.' + channel;
+      if (std::find(taken.begin(), taken.end(), channel) != taken.end()) channel.insert(0, name + ".");
     picture.append(more.image, names);
   }
 }
