@@ -148,6 +148,7 @@ double agx_of_grey(double value) {
 
 TEST_F(Display, AgxOfGreysIsWhatOthersHave) {
   std::vector<float> values;
+  values.reserve(300);
   for (int i = 0; i < 300; ++i) values.push_back(std::exp2(float(i) / 20 - 11));
   const Image8 shown = to_display(grey_image(values), {.view = "AgX"});
   for (int x = 0; x < shown.width; ++x) {
