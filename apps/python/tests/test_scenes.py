@@ -132,8 +132,8 @@ def test_arrays_that_are_no_meshes_are_refused():
     refused("expected three for each", positions=np.zeros((4, 3)))
     refused("4x4 matrix", matrix=np.eye(3))
     refused("expected a uint8 array", material=vernier.Material(base_color_texture=np.zeros((2, 2, 3))))
-    with pytest.raises(vernier.InputError, match="meshes: /materials/0/alphaMode"):
-        vernier.load([vernier.Mesh(np.eye(3), material=vernier.Material(alpha_mode="SOFT"))])
+    refused("'felt', alpha_mode: expected one of OPAQUE, MASK, BLEND, got 'SOFT'",
+            material=vernier.Material(alpha_mode="SOFT", name="felt"))
     clamped = vernier.load([vernier.Mesh(np.eye(3), material=vernier.Material(roughness=3))])
     assert clamped.notices[0].place == "/materials/0" and "clamped" in clamped.notices[0].text
     with pytest.raises(vernier.UsageError, match="orthonormal"):

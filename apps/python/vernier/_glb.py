@@ -16,6 +16,7 @@ from ._camera import Camera, matrix44
 from ._errors import UsageError
 from ._parts import Light, Material, Mesh
 
+_ALPHA_MODES = ("OPAQUE", "MASK", "BLEND")
 _EXTENSIONS = {
     "ior": ("KHR_materials_ior", "ior"),
     "specular": ("KHR_materials_specular", "specularFactor"),
@@ -123,6 +124,9 @@ class _Writer:
         return self.materials[id(material)]
 
     def material_json(self, material: Material) -> dict[str, Any]:
+        if material.alpha_mode not in _ALPHA_MODES:
+            raise UsageError(f"material '{material.name}', alpha_mode: expected one of {', '.join(_ALPHA_MODES)}, "
+                             f"got {material.alpha_mode!r}")
         surface: dict[str, Any] = {
             "baseColorFactor": [float(v) for v in (*material.base_color, 1.0)[:4]],
             "metallicFactor": float(material.metallic),
