@@ -3,12 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
+#include "apps/vernier/flags.h"
 #include "core/base/quantities.h"
 #include "core/image/image_io.h"
 #include "integrators/render/picture.h"
@@ -36,8 +34,7 @@ void require_picture(const std::string& text) {
                 fmt::format("--background: '{}' is no file and no colour; expected sRGB such as '#ff8000', "
                             "scene-linear such as 0.2,0.2,0.2, or a picture",
                             text));
-  if (!std::ifstream(text))
-    throw Error(ErrorKind::input, text, {}, fmt::format("cannot open image: {}", std::strerror(errno)));
+  require_readable(text);
 }
 
 }  // namespace

@@ -2,12 +2,12 @@
 #include "apps/vernier/flags.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -101,7 +101,7 @@ void require_separate_files(const std::vector<std::string>& read, const std::vec
 }
 
 void require_readable(const std::string& file) {
-  if (!std::ifstream(file))
+  if (::access(file.c_str(), R_OK) != 0)
     throw Error(ErrorKind::input, file, {}, fmt::format("cannot be read: {}", std::strerror(errno)));
 }
 

@@ -47,7 +47,8 @@ void add_threads_flag(CLI::App& command, unsigned& threads);
 /// read. Empty names are none.
 void require_separate_files(const std::vector<std::string>& read, const std::vector<std::string>& written);
 
-/// Throws Error(input) unless `file` can be opened.
+/// Throws Error(input) unless `file` is there and may be read. Nothing is opened, for a pipe can be read only
+/// once.
 void require_readable(const std::string& file);
 
 /// Throws Error(usage) when no scene was given to `command`.

@@ -2,11 +2,8 @@
 #include "apps/vernier/run_plan.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <map>
 
 #include "apps/vernier/checkpointing.h"
@@ -130,11 +127,10 @@ void check_writable_files(const RenderFlags& picture, const FilePatterns& files)
   check(files.checkpoint, picture.checkpoint);
 }
 
-/// Hours may pass until a scene's turn comes. Nothing is opened, for a pipe can be read only once.
+/// Hours may pass until a scene's turn comes.
 void require_scenes(const RunPlan& plan) {
   for (const std::string& scene : plan.scenes)
-    if (!is_standard_stream(scene) && ::access(scene.c_str(), R_OK) != 0)
-      throw Error(ErrorKind::input, scene, {}, fmt::format("cannot be read: {}", std::strerror(errno)));
+    if (!is_standard_stream(scene)) require_readable(scene);
 }
 
 }  // namespace

@@ -5,11 +5,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 
 #include "apps/vernier/flags.h"
 #include "core/base/names.h"
@@ -53,8 +50,7 @@ void require_picture(const std::string& file) {
                 fmt::format("--env: '{}' is no file and none of {}{}", file, fmt::join(names, ", "),
                             nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
   }
-  if (!std::ifstream(file))
-    throw Error(ErrorKind::input, file, {}, fmt::format("cannot open image: {}", std::strerror(errno)));
+  require_readable(file);
 }
 
 /// Surroundings that turn with a camera, where its look takes them.
