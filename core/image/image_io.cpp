@@ -30,7 +30,7 @@ std::vector<uint8_t> read_bytes(const std::string& path, size_t at_most = SIZE_M
   if (fs::exists(path, error) && !fs::is_regular_file(path, error))
     throw input_error(path, "is not a regular file; expected an image file");
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw input_error(path, fmt::format("cannot open image: {}", std::strerror(errno)));
+  if (!stream) throw input_error(path, fmt::format("cannot be read: {}", std::strerror(errno)));
   std::vector<uint8_t> bytes(std::min<uint64_t>(at_most, fs::file_size(path, error)));
   stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
   bytes.resize(size_t(stream.gcount()));

@@ -402,7 +402,7 @@ TEST(ImageIo, WrongKindsOfFileAreNamed) {
   EXPECT_THAT(decode_error({reinterpret_cast<const uint8_t*>(text.data()), text.size()}),
               HasSubstr("tex.png: not a PNG, JPEG or WebP"));
   EXPECT_THAT(error_of(ErrorKind::input, [&] { read_image(folder.file("none.exr")); }),
-              HasSubstr("none.exr: cannot open image: No such file"));
+              HasSubstr("none.exr: cannot be read: No such file"));
   EXPECT_THAT(error_of(ErrorKind::input, [&] { read_image(folder.path().string()); }),
               HasSubstr("is a folder"));
   EXPECT_THROW(read_image(folder.write("a.exr", text)), Error);
