@@ -16,8 +16,8 @@ constexpr std::string_view environment_name = "environment";
 constexpr std::string_view rest_name = "rest";
 
 constexpr std::array<std::string_view, light_way_count> way_names{
-    "emission",      "background",      "diffuse_direct",      "diffuse_indirect",
-    "glossy_direct", "glossy_indirect", "transmission_direct", "transmission_indirect"};
+    "emission",        "background",          "diffuse_direct",        "diffuse_indirect", "glossy_direct",
+    "glossy_indirect", "transmission_direct", "transmission_indirect", "volume_direct",    "volume_indirect"};
 
 size_t find_way(const std::string& name) {
   const auto found = std::find(way_names.begin(), way_names.end(), name);

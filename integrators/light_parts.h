@@ -21,8 +21,9 @@ namespace vernier {
 class Scene;
 
 /// Ways of light to the camera, by the surface that the camera sees. Diffuse is what the body of a surface
-/// scatters, to either side; transmission what passes a clear boundary; glossy the rest. Light is direct when
-/// it comes to that surface from its source, straight or through what does not bend it.
+/// scatters, to either side; transmission what passes a clear boundary; glossy the rest; volume what a medium
+/// scatters before any surface. Light is direct when it comes there from its source, straight or through what
+/// does not bend it.
 enum class LightWay {
   emission,    ///< of the surface itself
   background,  ///< what lies behind all surfaces
@@ -31,9 +32,11 @@ enum class LightWay {
   glossy_direct,
   glossy_indirect,
   transmission_direct,
-  transmission_indirect
+  transmission_indirect,
+  volume_direct,
+  volume_indirect
 };
-constexpr size_t light_way_count = 8;
+constexpr size_t light_way_count = 10;
 
 /// Layers that hold them, in that order: "diffuse_direct".
 std::span<const std::string_view> light_way_names();
@@ -62,7 +65,8 @@ class LightRoute {
     if (scatterings_ > 0 && is_straight) return next;
     ++next.scatterings_;
     if (scatterings_ > 0) return next;
-    next.is_transmitted_ = surface.is_transmitted(wi);
+    next.is_in_medium_ = surface.is_in_medium();
+    next.is_transmitted_ = !next.is_in_medium_ && surface.is_transmitted(wi);
     if (!is_delta) next.diffuse_ = surface.diffuse_share(wi);
     return next;
   }
@@ -71,6 +75,10 @@ class LightRoute {
     const auto way = [&](LightWay direct) -> Rgb& { return parts.ways[size_t(direct) + (scatterings_ > 1)]; };
     if (scatterings_ == 0) {
       parts.ways[size_t(is_from_surface ? LightWay::emission : LightWay::background)] += radiance;
+      return;
+    }
+    if (is_in_medium_) {
+      way(LightWay::volume_direct) += radiance;
       return;
     }
     way(LightWay::diffuse_direct) += radiance * diffuse_;
@@ -82,6 +90,7 @@ class LightRoute {
   int scatterings_ = 0;
   Rgb diffuse_{0, 0, 0};  ///< share of what the first surface scatters
   bool is_transmitted_ = false;
+  bool is_in_medium_ = false;
 };
 
 /// Which parts a render keeps apart, and into which group each source of light goes.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrators/transport.h"
+#include "integrators/scattering_stretch.h"
 
 namespace vernier {
 namespace {
@@ -8,7 +8,8 @@ namespace {
 /// Veach 1997, chapters 9 and 10). Unbiased but for what Estimate::missing tells.
 ///
 /// A surface that a path passes straight on hides no light from the vertex before it: next-event estimation
-/// looks through, and what the path meets beyond is weighted as if that vertex saw it.
+/// looks through, and what the path meets beyond is weighted as if that vertex saw it. A point where a medium
+/// scatters light is a vertex like any other, but for the depth, which counts surfaces.
 class PathIntegrator : public Integrator {
  public:
   explicit PathIntegrator(const IntegratorOptions& options) : options_(options) {}
@@ -25,19 +26,31 @@ class PathIntegrator : public Integrator {
     bool looks_through = options_.background_apart;  // the camera sees along it, through clear surfaces
     auto hit = intersect_from_camera(scene, segment);
     ++out.rays.camera;
-    out.met_surface = hit.has_value();
 
-    for (int depth = 1;; ++depth) {
-      throughput *= transmittance(scene.volumes().medium(segment.media), hit ? hit->t : segment.ray.t_max);
+    for (int vertex = 1, depth = 1;; ++vertex) {  // depth: of light that the ray meets
+      std::optional<ScatteringStretch> scattering;
+      const Stretch stretch =
+          scene.volumes().stretch(segment.media, segment.ray, 0, hit ? hit->t : segment.ray.t_max);
+      if (stretch.medium.scatters()) {
+        scattering.emplace(scene, segment, stretch, hit, throughput);
+        sampler.start_block(medium_blocks + uint32_t(vertex));
+        add_lit(out, *scattering, {scene, segment, throughput, depth, route}, context, sampler);
+        throughput *= scattering->sample(sampler.next1_fine(), hit);
+      } else {
+        throughput *= transmittance(stretch);
+      }
+      if (vertex == 1) out.met_surface = hit.has_value();
       if (!hit && looks_through) {
         if (depth <= options_.max_depth) out.background = throughput;
         break;
       }
-      add(out, depth, throughput * met_emission(scene, last, segment.ray, hit),
-          {context.sorter, route, source_of(hit)});
+      const bool in_medium = hit && hit->is_in_medium();
+      if (!in_medium)
+        add(out, depth, throughput * met_emission(scene, last, segment.ray, hit),
+            {context.sorter, route, source_of(hit)});
       if (!hit) break;
 
-      sampler.start_block(uint32_t(depth));
+      sampler.start_block(uint32_t(vertex));
       const Vec2d light_point = sampler.next2_fine();
       const Vec2f direction = sampler.next2();
       const double light_choice = sampler.next1_fine();
@@ -50,24 +63,29 @@ class PathIntegrator : public Integrator {
         out.met_surface = depth > 1 || out.background != throughput;
         break;
       }
-      if (depth == options_.max_depth) {
+      if (depth == options_.max_depth && !in_medium) {
         if (roulette >= audited_share) break;
         roulette /= audited_share;
         audit_scale = 1 / audited_share;
         throughput *= audit_scale;
       }
+      if (!in_medium) ++depth;
       const Shading surface = shade(scene, *hit, -segment.ray.direction, throughput);
       looks_through = looks_through && is_clear(surface);
-      if (options_.light_sampling != LightSampling::bsdf)
+      const bool may_be_lit = !in_medium || stretch.medium.sees_lights;
+      if (options_.light_sampling != LightSampling::bsdf && may_be_lit)
         if (const auto light = scene.sample_light(*hit, light_choice, light_point);
             light && !(looks_through && will_be_met(*light, surface)))
-          add_direct(out, {scene, *hit, surface, throughput, depth, route}, *light, context, shadow_roulette);
+          add_direct(out,
+                     {scene, *hit, surface, in_medium ? throughput * scattering->weight(*light) : throughput,
+                      depth, route},
+                     *light, context, shadow_roulette);
       const auto next = surface.sample(lobe_choice, direction);
       if (!next) break;
       if (context.sorter) route = route.scattered(surface, next->wi, next->is_delta, next->is_straight);
       throughput *= next->weight;
       eta_scale *= next->eta * next->eta;
-      const float survival = survival_probability(depth, throughput * (eta_scale / audit_scale));
+      const float survival = survival_probability(vertex, depth, throughput * (eta_scale / audit_scale));
       if (roulette >= survival) break;
       throughput /= survival;
       looks_through = looks_through && next->is_transmitted;
@@ -91,13 +109,25 @@ class PathIntegrator : public Integrator {
     bool is_delta = true;
   };
 
+  /// Blocks of the sampler for where a ray is scattered on its way; the lower ones are those of vertices.
+  static constexpr uint32_t medium_blocks = 1u << 20;
+
   /// Where a path may be lit.
   struct Vertex {
     const Scene& scene;
     const Interaction& at;
     const Shading& surface;
     Rgb throughput;
-    int depth;
+    int depth;  ///< of light that it meets
+    const LightRoute& route;
+  };
+
+  /// A path on its way between vertices.
+  struct Way {
+    const Scene& scene;
+    const Segment& segment;
+    Rgb throughput;
+    int depth;  ///< of light that it meets
     const LightRoute& route;
   };
 
@@ -164,10 +194,23 @@ class PathIntegrator : public Integrator {
     if (!passage.is_bent) {
       const LightRoute route =
           context.sorter ? vertex.route.scattered(vertex.surface, light.wi, false, false) : vertex.route;
-      add(out, vertex.depth + 1 + passage.surfaces, radiance, {context.sorter, route, light.source});
+      add(out, vertex.depth + passage.surfaces, radiance, {context.sorter, route, light.source});
     } else if (light.is_delta) {
       out.missing.bent += radiance;
     }
+  }
+
+  /// Light of a lamp that a scattering medium on the way sends along it, where the lamp shines on it.
+  void add_lit(Estimate& out, const ScatteringStretch& scattering, const Way& way,
+               const SampleContext& context, Sampler& sampler) const {
+    const Vec2f choice = sampler.next2();
+    const float roulette = sampler.next1();
+    if (options_.light_sampling == LightSampling::bsdf) return;
+    const auto lit = scattering.sample_lit(choice.x, choice.y);
+    if (!lit) return;
+    const Shading phase = shade(way.scene, lit->at, -way.segment.ray.direction);
+    add_direct(out, {way.scene, lit->at, phase, way.throughput * lit->weight, way.depth, way.route},
+               lit->light, context, roulette);
   }
 
   /// Of a shadow ray that brings at most `radiance` to a pixel whose samples spread anyway. What roulette
@@ -182,11 +225,14 @@ class PathIntegrator : public Integrator {
 
   /// Russian roulette. Five times the throughput instead of the throughput itself: ending paths that still
   /// carry a fifth of their light costs more in variance than it saves in rays on measured scenes.
-  float survival_probability(int depth, const Rgb& throughput) const {
+  /// A path that a medium scatters for ever, as an open surface around it may let happen, ends nevertheless.
+  float survival_probability(int vertex, int depth, const Rgb& throughput) const {
     const float kept = 5 * max_component(throughput);
-    if (depth >= options_.max_depth) return std::min(0.9f, kept);
-    return options_.russian_roulette && depth > 1 ? std::min(1.f, kept) : 1;
+    if (depth > options_.max_depth) return std::min(0.9f, kept);
+    if (vertex > most_certain_vertices) return std::min(0.99f, kept);
+    return options_.russian_roulette && vertex > 1 ? std::min(1.f, kept) : 1;
   }
+  static constexpr int most_certain_vertices = 1000;
 
   IntegratorOptions options_;
 };

@@ -58,7 +58,8 @@ class WhittedIntegrator : public Integrator {
   Rgb arriving(Walk& walk, const Segment& segment, const std::optional<Interaction>& hit,
                const Carried& carried) const {
     const Ray& ray = segment.ray;
-    const Rgb passed = transmittance(walk.scene.volumes().medium(segment.media), hit ? hit->t : ray.t_max);
+    const Rgb passed =
+        transmittance(walk.scene.volumes().stretch(segment.media, ray, 0, hit ? hit->t : ray.t_max));
     if (!hit && carried.sees_background) {
       walk.out.background += carried.weight * passed;
       return {0, 0, 0};

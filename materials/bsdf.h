@@ -5,6 +5,7 @@
 
 #include "materials/dielectric.h"
 #include "materials/glossy.h"
+#include "materials/henyey_greenstein.h"
 #include "materials/lambert.h"
 #include "materials/layered.h"
 #include "materials/mixture.h"
@@ -13,7 +14,7 @@ namespace vernier {
 
 /// All models. Made at each hit, by value, with textures already read; the contract is in
 /// materials/bsdf_sample.h. A new model is a header of its own and an entry here.
-class Bsdf : public std::variant<Lambert, Glossy, Dielectric, Mixture, Layered> {
+class Bsdf : public std::variant<Lambert, Glossy, Dielectric, Mixture, Layered, HenyeyGreenstein> {
  public:
   using variant::variant;
 

@@ -15,7 +15,7 @@ Vec2f transform_uv(const TextureUse& use, const Vec2f& uv) {
 Rgb rgb(const Vec4f& v) { return {v.x, v.y, v.z}; }
 
 /// Beer-Lambert coefficient that leaves `color` after `distance` (KHR_materials_volume).
-Rgb absorption_of(const MaterialDescription& d) {
+Rgb extinction_of(const MaterialDescription& d) {
   Rgb sigma(0, 0, 0);
   if (!std::isfinite(d.attenuation_distance) || !(d.attenuation_distance > 0)) return sigma;
   for (int c = 0; c < 3; ++c)
@@ -57,7 +57,7 @@ Material::Material(const MaterialDescription& description, std::span<const Textu
   needs_attributes_ = bsdf_varies || has_normal_maps() || d.emissive_texture;
   is_emissive_ = d.unlit || !is_black(d.emissive);
   tangent_texcoord_ = texcoord_of_tangents(d);
-  absorption_ = absorption_of(d);
+  extinction_ = extinction_of(d);
   if (d.transmission > 0)
     for (const bool front : {false, true}) sides_[front] = make_side(front, {1, 1, 1});
   // Under a normal map the coat's normal varies in the frame of the base.

@@ -80,10 +80,15 @@ class Material {
   }
   /// Light may pass through the surface.
   bool transmits() const { return description_.transmits(); }
-  /// Encloses a volume: the inside absorbs, and its surface bends light that is not scattered.
+  /// Encloses a volume: its inside may absorb and scatter, and its surface bends light that passes it.
   bool is_volume_boundary() const { return description_.bounds_volume(); }
-  /// Absorption coefficient of that volume, per metre (KHR_materials_volume: -ln(colour) / distance).
-  const Rgb& absorption() const { return absorption_; }
+  /// Of what fills that volume, per metre: what is lost along a ray, by absorption and by scattering
+  /// (KHR_materials_volume: -ln(colour) / distance), and what of it is scattered.
+  const Rgb& extinction() const { return extinction_; }
+  Rgb scattering() const { return extinction_ * description_.scattering_albedo; }
+  float scattering_anisotropy() const { return description_.scattering_anisotropy; }
+  /// Of a boundary, that some light passes it without being scattered, bent or not.
+  bool passes_unscattered() const { return description_.transmission > 0; }
   /// Index of refraction of what lies behind the surface, by channel; air where light is not refracted.
   Rgb interior_ior() const;
   /// Some light may pass a surface that is no volume's boundary without being deflected.
@@ -132,7 +137,7 @@ class Material {
   bool is_constant_ = false;  ///< nothing of the BSDF depends on the place
   bool is_emissive_ = false;
   int tangent_texcoord_ = 0;
-  Rgb absorption_{0, 0, 0};
+  Rgb extinction_{0, 0, 0};
   std::array<Side, 2> sides_;  ///< back and front, in air; only of materials that transmit light unscattered
   Bsdf constant_front_, constant_back_;
 };

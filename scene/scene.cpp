@@ -12,6 +12,7 @@
 #include "scene/emission.h"
 #include "scene/lights/punctual.h"
 #include "scene/lights/triangle_light.h"
+#include "vernier/error.h"
 
 namespace vernier {
 namespace {
@@ -67,13 +68,15 @@ void Scene::compile_materials(const SceneDescription& description) {
   note_without_volume(description.instances, boundaries.cut, " has holes by its alpha", notices_);
   // Boundaries that bend light stop what goes straight: of interest only to lamps, whose light is then known
   // to be missing, and where one volume may hide the boundary of another.
-  const bool crosses_volumes = volumes_.are_nested() || !description.lights.empty();
+  const bool has_lamps = !description.lights.empty();
   for (uint32_t i = 0; i < geometry_.instance_count(); ++i) {
     const Material& material = materials_[material_of_instance_[i]];
     const Rgb ior = material.interior_ior();
     const bool may_not_bend = ior.x == 1 || ior.y == 1 || ior.z == 1;
-    clear_.push_back(material.is_volume_boundary() ? crosses_volumes || may_not_bend
-                                                   : material.may_be_clear());
+    clear_.push_back(material.is_volume_boundary()
+                         ? volumes_.are_nested() ||
+                               (material.passes_unscattered() && (has_lamps || may_not_bend))
+                         : material.may_be_clear());
   }
 }
 
@@ -118,10 +121,19 @@ void Scene::collect_lights(const SceneDescription& description) {
   for (uint32_t i = 0; i < description.lights.size(); ++i) {
     auto light = std::make_unique<PunctualLight>(description.lights[i]);
     light->set_source({LightSource::Kind::lamp, i});
-    if (light->power(bounds()) > 0) add(std::move(light));
+    const float power = light->power(bounds());
+    if (!(power > 0)) continue;
+    const bool has_place = light->bounds().has_value();
+    const auto index = uint32_t(add(std::move(light)));
+    if (has_place) lamps_.add(description.lights[i], power, index, i);
   }
   if (description.environment) add_environment(description.environment, lights);
+  set_lights(std::move(lights));
+}
+
+void Scene::set_lights(std::vector<std::unique_ptr<Light>> lights) {
   lights_ = LightSet(std::move(lights));
+  volumes_.find_dim_ones(clear_, materials_, material_of_instance_, lights_);
   collect_ground_light();
 }
 
@@ -148,8 +160,27 @@ void Scene::surround(std::shared_ptr<const EnvironmentDescription> description) 
   environment_ = nullptr;
   environment_index_ = -1;
   if (description) add_environment(std::move(description), lights);
-  lights_ = LightSet(std::move(lights));
-  collect_ground_light();
+  set_lights(std::move(lights));
+}
+
+void Scene::fill_air(const Fog& fog) {
+  const auto refuse = [](const char* what, const std::string& found, const char* expected) {
+    throw Error(ErrorKind::usage, {}, "fog", fmt::format("{} {}; expected {}", what, found, expected));
+  };
+  if (!(fog.density >= 0) || !std::isfinite(fog.density))
+    refuse("a density of", fmt::format("{}", fog.density), "0 or more per metre");
+  for (int c = 0; c < 3; ++c)
+    if (!(fog.albedo[c] >= 0 && fog.albedo[c] <= 1))
+      refuse("an albedo of", fmt::format("{}", fog.albedo[c]), "0 to 1");
+  if (!(std::abs(fog.anisotropy) < 1))
+    refuse("an anisotropy of", fmt::format("{}", fog.anisotropy), "-1 to 1");
+  if (!(fog.radius >= 0) || !std::isfinite(fog.radius))
+    refuse("a radius of", fmt::format("{}", fog.radius), "0 or more metres");
+  fog_ = fog;
+  if (fog_.radius == 0) fog_.radius = 4 * bounds().radius();
+  const Rgb extinction(fog_.density);
+  volumes_.fill_air({extinction, {1, 1, 1}, extinction * fog_.albedo, fog_.anisotropy},
+                    {bounds().center(), fog_.density > 0 ? fog_.radius : 0});
 }
 
 std::optional<SurfacePoint> Scene::intersect(const Ray& ray) const {
@@ -188,7 +219,7 @@ Shading Scene::shade(const SurfacePoint& point, const Vec3f& wo, Encounter encou
 }
 
 LightReceiver Scene::receiver(const SurfacePoint& point) const {
-  if (material(point).transmits()) return {point.position, {0, 0, 0}};
+  if (point.is_in_medium() || material(point).transmits()) return {point.position, {0, 0, 0}};
   return {point.position, point.front ? point.ng : -point.ng};
 }
 
@@ -198,10 +229,17 @@ std::optional<LightSample> Scene::sample_light(const SurfacePoint& from, double 
   auto sample = light->sample(from, v);
   if (!sample) return std::nullopt;
   sample->source = light->source();
+  sample->choice_prob = prob;
   if (sample->is_delta)
     sample->radiance /= prob;
   else
     sample->pdf *= prob;
+  return sample;
+}
+
+std::optional<LightSample> Scene::light_from(uint32_t light, const SurfacePoint& from) const {
+  auto sample = lights_[light].sample(from, {0, 0});
+  if (sample) sample->source = lights_[light].source();
   return sample;
 }
 
@@ -232,6 +270,9 @@ std::vector<std::pair<std::string, std::string>> Scene::identity() const {
     identity.emplace_back("env-rotate", fmt::format("{}", environment.rotation));
     identity.emplace_back("env-scale", fmt::format("{}", environment.scale));
   }
+  if (fog_.density > 0)
+    identity.emplace_back("fog", fmt::format("{},{},{},{},{},{}", fog_.density, fog_.albedo.x, fog_.albedo.y,
+                                             fog_.albedo.z, fog_.anisotropy, fog_.radius));
   return identity;
 }
 
@@ -242,6 +283,8 @@ std::shared_ptr<Scene> build_scene(SceneDescription description, const SceneOpti
 void surround(Scene& scene, std::shared_ptr<const EnvironmentDescription> environment) {
   scene.surround(std::move(environment));
 }
+
+void fill_air(Scene& scene, const Fog& fog) { scene.fill_air(fog); }
 
 const std::vector<Notice>& notices_of(const Scene& scene) { return scene.notices(); }
 

@@ -11,6 +11,7 @@
 #include "scene/geometry.h"
 #include "scene/lights/environment.h"
 #include "scene/lights/ground_light.h"
+#include "scene/lights/lamps_along_ray.h"
 #include "scene/lights/light_set.h"
 #include "scene/names.h"
 #include "scene/shading.h"
@@ -31,6 +32,10 @@ class Scene {
   /// while other threads use the scene: what surroundings it needs is told by looking at it.
   void surround(std::shared_ptr<const EnvironmentDescription> description);
   bool has_environment() const { return environment_ != nullptr; }
+  /// As vernier::fill_air.
+  void fill_air(const Fog& fog);
+  /// What fills it; of density 0: nothing.
+  const Fog& fog() const { return fog_; }
 
   /// Answers rays by another accelerator of the same geometry from now on. Not while other threads use the
   /// scene.
@@ -55,9 +60,16 @@ class Scene {
   /// radiance). u picks the light, v the point on it.
   std::optional<LightSample> sample_light(const SurfacePoint& from, double u, const Vec2d& v) const;
 
+  /// Light of one light of lights(), as if it were the only one.
+  std::optional<LightSample> light_from(uint32_t light, const SurfacePoint& from) const;
+  /// Probability that sample_light() chooses it.
+  float light_prob(const SurfacePoint& from, uint32_t light) const {
+    return lights_.prob(receiver(from), light);
+  }
+
   /// Whether a camera sees of a surface the shadow alone.
   bool catches_shadow(const SurfacePoint& point) const {
-    return ground_light_ && material(point).catches_shadow();
+    return ground_light_ && !point.is_in_medium() && material(point).catches_shadow();
   }
   /// As GroundLight::sample, of a scene that catches shadows.
   std::optional<LightSample> sample_ground_light(const SurfacePoint& from, double u, const Vec2d& v) const {
@@ -74,6 +86,7 @@ class Scene {
   const SceneNames& names() const { return names_; }
   const VolumeSet& volumes() const { return volumes_; }
   const LightSet& lights() const { return lights_; }
+  const Lamps& lamps() const { return lamps_; }
   const SceneGeometry& geometry() const { return geometry_; }
   const Accelerator& accelerator() const { return *accelerator_; }
   /// What the accelerator was built from, for building others beside it; valid as long as the scene.
@@ -89,7 +102,7 @@ class Scene {
   LightReceiver receiver(const SurfacePoint& point) const;
   void compile_materials(const SceneDescription& description);
   void collect_lights(const SceneDescription& description);
-  /// Once the lights are there, or others are.
+  void set_lights(std::vector<std::unique_ptr<Light>> lights);
   void collect_ground_light();
   void add_environment(std::shared_ptr<const EnvironmentDescription> description,
                        std::vector<std::unique_ptr<Light>>& lights);
@@ -106,10 +119,12 @@ class Scene {
   std::optional<CoverageFilter> coverage_;
   std::unique_ptr<Accelerator> accelerator_;
   LightSet lights_;
+  Lamps lamps_;
   std::vector<std::vector<int32_t>>
       triangle_lights_;  ///< by instance and triangle: index into lights_, -1 for none
   const EnvironmentLight* environment_ = nullptr;
   int32_t environment_index_ = -1;
+  Fog fog_;
   std::optional<GroundLight> ground_light_;  ///< where some material catches shadows
   std::vector<Notice> notices_;
 };

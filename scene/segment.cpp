@@ -188,7 +188,7 @@ Passage transmittance(const Scene& scene, const Segment& segment) {
   thread_local std::vector<RawHit> clear;
   clear.clear();
   if (scene.accelerator().occluded(ray, clear)) return {};
-  if (clear.empty() && scene.volumes().empty()) return {{1, 1, 1}};
+  if (clear.empty() && scene.volumes().are_clear()) return {{1, 1, 1}};
   sort_hits(clear);
 
   Passage passage{{1, 1, 1}};
@@ -212,19 +212,20 @@ Passage transmittance(const Scene& scene, const Segment& segment) {
         continue;
       }
     }
-    passage.fraction *= transmittance(scene.volumes().medium(media), (point.t - t) * scale);
+    passage.fraction *= transmittance(scene.volumes().stretch(media, ray, t, point.t), scale);
     passage.fraction *= passing(scene, at, direction, passage.is_bent);
     if (is_black(passage.fraction)) return {};
     ++passage.surfaces;
     media = at.beyond;
     t = point.t;
   }
-  const float rest = ray.t_max - t;
-  passage.fraction *= transmittance(scene.volumes().medium(media), rest * scale);
+  passage.fraction *= transmittance(scene.volumes().stretch(media, ray, t, ray.t_max), scale);
   return passage;
 }
 
 Shading shade(const Scene& scene, const Interaction& at, const Vec3f& wo, const Rgb& carried) {
+  if (at.is_in_medium())
+    return {Frame::from_normal(wo), wo, wo, HenyeyGreenstein{scene.volumes().medium(at.before).anisotropy}};
   Encounter encounter{.front = at.front};
   if (!at.before.empty() || !at.beyond.empty() || bounds_volume(scene, at.instance)) {
     encounter.channel = only_channel(carried);

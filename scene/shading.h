@@ -71,6 +71,9 @@ class Shading {
     return result;
   }
 
+  /// Not at a surface, but at a point inside a medium that scatters.
+  bool is_in_medium() const { return std::holds_alternative<HenyeyGreenstein>(bsdf_); }
+
   const Vec3f& normal() const { return frame_.z; }
 
  private:

@@ -8,6 +8,8 @@
 namespace vernier {
 
 /// A point on the scene's surface, with what is known of its rounding error. The only place rays are offset.
+/// Also a point inside a medium, where light is scattered: it belongs to no instance, and its normal and
+/// error are zero.
 struct SurfacePoint {
   Vec3f position;      ///< world, from barycentrics
   Vec3f error;         ///< bound on |position - the exact point of the triangle| per axis
@@ -18,6 +20,7 @@ struct SurfacePoint {
   bool front = true;  ///< met from the front side
 
   TriangleId triangle() const { return {instance, primitive}; }
+  bool is_in_medium() const { return instance == TriangleId::none; }
 
   /// Ray leaving the surface along w (world, any length), free of self-intersection.
   Ray spawn(const Vec3f& w) const {

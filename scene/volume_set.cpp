@@ -126,11 +126,39 @@ VolumeSet::VolumeSet(const VolumeBoundaries& boundaries, const SceneGeometry& ge
     const Material& material = materials[material_of_instance[closed[i].instances[0]]];
     for (const uint32_t instance : closed[i].instances)
       of_instance_[instance] = {uint32_t(media_.size()), closed[i].is_inward};
-    media_.push_back({material.absorption(), material.interior_ior()});
+    media_.push_back({material.extinction(), material.interior_ior(), material.scattering(),
+                      material.scattering_anisotropy(), true});
     bounds_.push_back(boxes[i]);
     all_bounds_.add(boxes[i]);
   }
   are_nested_ = any_touch(bounds_);
+}
+
+void VolumeSet::find_dim_ones(const std::vector<bool>& clear, std::span<const Material> materials,
+                              std::span<const uint32_t> material_of_instance, const LightSet& lights) {
+  // Beyond some millions of pairs looking takes longer than it saves.
+  if (media_.empty() || media_.size() * lights.size() > 10'000'000) return;
+  for (size_t v = 0; v < media_.size(); ++v) {
+    bool sees = false;
+    for (size_t i = 0; i < lights.size() && !sees; ++i)
+      if (const auto at = lights[i].bounds()) sees = at->box.touches(bounds_[v]);
+    media_[v].sees_lights = sees;
+  }
+  for (size_t i = 0; i < of_instance_.size(); ++i)
+    if (const uint32_t v = of_instance_[i].volume; v != MediumStack::air)
+      media_[v].sees_lights |= clear[i] || materials[material_of_instance[i]].is_emissive();
+}
+
+Stretch VolumeSet::in_air(const Ray& ray, float begin, float end) const {
+  // In double precision: a ray may begin far outside, where the ball is seen small.
+  const Vec3d direction(ray.direction), from = Vec3d(ray.origin) - Vec3d(air_fills_->center);
+  const double square_length = length_squared(direction), middle = -dot(from, direction) / square_length;
+  const double aside2 = length_squared(from + middle * direction);
+  const double half2 = square(double(air_fills_->radius)) - aside2;
+  if (!(half2 > 0)) return {air_, begin, begin};
+  const double half = std::sqrt(half2 / square_length);
+  const float first = std::max(begin, float(middle - half));
+  return {air_, first, std::max(first, std::min(end, float(middle + half)))};
 }
 
 bool VolumeSet::may_contain(const Vec3f& point) const {

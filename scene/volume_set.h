@@ -2,11 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "materials/material.h"
 #include "scene/geometry.h"
+#include "scene/lights/light_set.h"
 #include "scene/medium.h"
 
 namespace vernier {
@@ -34,6 +36,23 @@ struct VolumeBoundaries {
   }
 };
 
+/// Part of a ray between two of its parameters, all in one medium.
+struct Stretch {
+  const Medium& medium;
+  float begin, end;
+};
+
+/// Fraction of light that is left of a ray at its end, whose direction has that length in metres.
+inline Rgb transmittance(const Stretch& stretch, float scale = 1) {
+  return transmittance(stretch.medium, (stretch.end - stretch.begin) * scale);
+}
+
+/// A ball in world space.
+struct Ball {
+  Vec3f center;
+  float radius;
+};
+
 /// The regions of a scene that a medium other than air fills (KHR_materials_volume). Numbered by increasing
 /// priority: of two volumes that overlap the smaller one is there, as what lies in something else displaces
 /// it.
@@ -43,7 +62,10 @@ class VolumeSet {
   VolumeSet(const VolumeBoundaries& boundaries, const SceneGeometry& geometry,
             std::span<const Material> materials, std::span<const uint32_t> material_of_instance);
 
+  /// No surface bounds a volume.
   bool empty() const { return media_.empty(); }
+  /// There is nothing anywhere but empty air.
+  bool are_clear() const { return empty() && !air_fills_; }
   /// Number of the volume that the instance bounds; MediumStack::air for others.
   uint32_t of_instance(uint32_t instance) const {
     return empty() ? MediumStack::air : of_instance_[instance].volume;
@@ -55,8 +77,24 @@ class VolumeSet {
   const Medium& medium(const MediumStack& stack) const {
     return stack.empty() ? air_ : media_[stack.current()];
   }
+  /// What a ray travels through between two of its parameters, if it lies in `stack` there.
+  Stretch stretch(const MediumStack& stack, const Ray& ray, float begin, float end) const {
+    if (!stack.empty() || !air_fills_) return {medium(stack), begin, end};
+    return in_air(ray, begin, end);
+  }
+
+  /// Fills the air with `medium` as far as `ball` reaches, beyond is nothing; a ball of no radius: not at
+  /// all. Its index must be that of air.
+  void fill_air(const Medium& medium, const Ball& ball) {
+    air_ = ball.radius > 0 ? medium : Medium{};
+    air_fills_ = ball.radius > 0 ? std::optional(ball) : std::nullopt;
+  }
   /// Whether the point may lie in a volume; false: it certainly lies in none.
   bool may_contain(const Vec3f& point) const;
+  /// Looks which volumes certainly see no light: those with no light of `lights` inside, and no boundary that
+  /// is emissive or, by `clear`, lets light pass straight on, by instance.
+  void find_dim_ones(const std::vector<bool>& clear, std::span<const Material> materials,
+                     std::span<const uint32_t> material_of_instance, const LightSet& lights);
   /// Some volumes touch, overlap or lie in each other.
   bool are_nested() const { return are_nested_; }
 
@@ -66,7 +104,10 @@ class VolumeSet {
     bool is_inward = false;
   };
 
+  Stretch in_air(const Ray& ray, float begin, float end) const;
+
   Medium air_;
+  std::optional<Ball> air_fills_;  ///< none: air is empty
   std::vector<Medium> media_;
   std::vector<Bounds> bounds_;  ///< by volume
   Bounds all_bounds_;

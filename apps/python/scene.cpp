@@ -135,6 +135,13 @@ void bind_built(py::module_& module) {
           },
           py::arg("environment").none(true))
       .def(
+          "fill_air",
+          [](BuiltScene& built, float density, const std::array<float, 3>& albedo, float anisotropy,
+             float radius) {
+            fill_air(*built.scene, {density, {albedo[0], albedo[1], albedo[2]}, anisotropy, radius});
+          },
+          py::arg("density"), py::arg("albedo"), py::arg("anisotropy"), py::arg("radius"))
+      .def(
           "is_dark",
           [](const BuiltScene& built, const std::string& settings) {
             const py::gil_scoped_release unlocked;

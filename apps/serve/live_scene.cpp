@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "apps/vernier/choose_camera.h"
+#include "apps/vernier/fog_flag.h"
 #include "apps/vernier/result_warnings.h"
 #include "scene/camera.h"
 #include "scene/segment.h"
@@ -17,9 +18,9 @@ namespace {
 
 /// What a scene is described and built by.
 std::string building_key(const RenderFlags& flags) {
-  return fmt::format("{}\n{}\n{}\n{}\n{}", flags.import.variant,
+  return fmt::format("{}\n{}\n{}\n{}\n{}\n{}", flags.import.variant,
                      flags.import.time ? fmt::format("{}", *flags.import.time) : "", flags.import.animation,
-                     flags.camera.ground ? int(*flags.camera.ground) + 1 : 0, flags.accelerator);
+                     flags.camera.ground ? int(*flags.camera.ground) + 1 : 0, flags.accelerator, flags.fog);
 }
 
 std::string name_or_number(const std::string& name, size_t number) {
@@ -47,6 +48,7 @@ void LiveScene::build(const RenderRequest& request, NoticeLog& log) {
     }
     const std::string source = description.source;
     built.scene = build_scene(std::move(description), {request.flags.accelerator});
+    fill_air(*built.scene, parse_fog(request.flags.fog));
     if (request.flags.import.strict) refuse_warnings(source, built.scene->notices());
     const std::unique_lock lock(mutex_);
     built_ = std::move(built);

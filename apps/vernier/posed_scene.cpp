@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/vernier/posed_scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numbers>
 #include <utility>
 
+#include "apps/vernier/fog_flag.h"
 #include "apps/vernier/scene_summary.h"
 #include "apps/vernier/stopwatch.h"
 #include "scene/subject.h"
@@ -48,6 +51,14 @@ PosedScene::PosedScene(const RenderFlags& flags, const RunPlan& plan, SceneDescr
   Stopwatch watch;
   scene_ = build_scene(std::move(description), {flags.accelerator});
   report_.build_seconds = watch.lap();
+  if (const Fog fog = parse_fog(flags.fog); fog.density > 0) {
+    scene_->fill_air(fog);
+    log.add(
+        {Notice::Severity::info,
+         {},
+         fmt::format("fog fills a ball of {:.3g} m about the scene{}", scene_->fog().radius,
+                     flags.integrator == "whitted" ? "; whitted lets it dim light, and scatters none" : "")});
+  }
   report_.accelerator = scene_->accelerator_name();
   report_.accelerator_stats = scene_->accelerator().stats();
 }

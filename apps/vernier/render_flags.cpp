@@ -10,6 +10,7 @@
 #include "apps/vernier/display_flags.h"
 #include "apps/vernier/exr_flags.h"
 #include "apps/vernier/flags.h"
+#include "apps/vernier/fog_flag.h"
 #include "apps/vernier/light_flags.h"
 #include "core/base/quantities.h"
 #include "core/denoise/denoise.h"
@@ -73,6 +74,7 @@ void add_integrator_flags(CLI::App& command, RenderFlags& flags) {
       ->type_name("NAME");
   add_surroundings_flags(command, flags.surroundings);
   add_background_flags(command, flags.background);
+  add_fog_flag(command, flags.fog);
 }
 
 void add_output_flags(CLI::App& command, RenderFlags& flags) {

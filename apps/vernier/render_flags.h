@@ -38,6 +38,7 @@ struct RenderFlags {
   CameraFlags camera;
   SurroundingsFlags surroundings;
   BackgroundFlags background;
+  std::string fog;  ///< as typed; empty: none
 
   std::string layers;  ///< --aov; empty: none
   std::vector<std::string> light_groups;

@@ -13,6 +13,7 @@
 #include "apps/vernier/display_flags.h"
 #include "apps/vernier/exr_flags.h"
 #include "apps/vernier/flags.h"
+#include "apps/vernier/fog_flag.h"
 #include "apps/vernier/light_flags.h"
 #include "apps/vernier/picture_output.h"
 #include "apps/vernier/stopwatch.h"
@@ -200,6 +201,7 @@ RenderRequest check_render_flags(const RenderFlags& given) {
   if (request.settings.width > 0) check_picture_size(request.settings, memory_use(request));
   request.display = choose_display(flags);
   check_surroundings(flags.surroundings);
+  parse_fog(flags.fog);
   request.check_seconds = watch.lap();
   return request;
 }

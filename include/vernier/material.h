@@ -55,6 +55,10 @@ struct MaterialDescription {
   float thickness = 0;              ///< KHR_materials_volume; 0: thin-walled
   float attenuation_distance = std::numeric_limits<float>::infinity();  ///< metres, world space
   Rgb attenuation_color{1, 1, 1};
+  /// Part of what a volume takes from a ray that it scatters; the rest is absorbed (single-scattering
+  /// albedo).
+  Rgb scattering_albedo{0, 0, 0};
+  float scattering_anisotropy = 0;  ///< mean cosine of its deflection, in (-1, 1) (Henyey and Greenstein)
 
   float clearcoat = 0;           ///< KHR_materials_clearcoat
   TextureUse clearcoat_texture;  ///< R

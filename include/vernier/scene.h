@@ -139,6 +139,19 @@ VERNIER_API std::shared_ptr<Scene> build_scene(SceneDescription description,
 /// Puts an environment around a scene, in place of the one it has, if any. Not while anybody renders it.
 VERNIER_API void surround(Scene& scene, std::shared_ptr<const EnvironmentDescription> environment);
 
+/// What scatters light all over a scene.
+struct Fog {
+  float density = 0;     ///< per metre: part of the light that a short way takes, over its length
+  Rgb albedo{1, 1, 1};   ///< part of it that is scattered rather than absorbed
+  float anisotropy = 0;  ///< mean cosine of the deflection, in (-1, 1)
+  float radius =
+      0;  ///< metres, of the ball about the scene's center that it fills; 0: four times the scene's
+};
+
+/// Fills the air of a scene with fog, in place of what is there; of density 0: with nothing. Not while
+/// anybody renders it. Throws Error(usage) on what no fog can be.
+VERNIER_API void fill_air(Scene& scene, const Fog& fog);
+
 /// What came up when the scene was built.
 VERNIER_API const std::vector<Notice>& notices_of(const Scene& scene);
 

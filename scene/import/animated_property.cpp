@@ -70,6 +70,9 @@ constexpr AnimatedProperty properties[] = {
     {"/materials/{}/extensions/KHR_materials_pbrSpecularGlossiness/diffuseFactor", 4},
     {"/materials/{}/extensions/KHR_materials_pbrSpecularGlossiness/specularFactor", 3},
     {"/materials/{}/extensions/KHR_materials_pbrSpecularGlossiness/glossinessFactor"},
+    {"/materials/{}/extensions/KHR_materials_scatter/scatterStrengthFactor"},
+    {"/materials/{}/extensions/KHR_materials_scatter/multiscatterColorFactor", 3},
+    {"/materials/{}/extensions/KHR_materials_scatter/scatterAnisotropy", 1, -1},
     {"/materials/{}/extensions/KHR_materials_sheen/sheenColorFactor", 3},
     {"/materials/{}/extensions/KHR_materials_sheen/sheenRoughnessFactor"},
     {"/materials/{}/extensions/KHR_materials_specular/specularFactor"},
@@ -78,6 +81,8 @@ constexpr AnimatedProperty properties[] = {
     {"/materials/{}/extensions/KHR_materials_volume/thicknessFactor", 1, 0},
     {"/materials/{}/extensions/KHR_materials_volume/attenuationDistance"},
     {"/materials/{}/extensions/KHR_materials_volume/attenuationColor", 3},
+    {"/materials/{}/extensions/KHR_materials_volume_scatter/multiscatterColor", 3},
+    {"/materials/{}/extensions/KHR_materials_volume_scatter/scatterAnisotropy", 1, -1},
 };
 
 // Of any texture of a material, whose path comes before.

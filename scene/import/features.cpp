@@ -44,6 +44,9 @@ constexpr ExtensionEntry extensions[] = {
      "archived; its specular colour becomes that of a dielectric (KHR_materials_specular with an index of 0) "
      "and 1 - glossiness its roughness; the layer takes from the diffuse colour what it reflects to each "
      "side, not the same to all"},
+    {"KHR_materials_scatter", Status::approximated,
+     "draft of June 2026, which takes the place of KHR_materials_volume_scatter; volumes by their factors, "
+     "no textures; thin walls keep their clear transmission"},
     {"KHR_materials_sheen", Status::exact,
      "Charlie with two-sided albedo scaling (Sheen layering); roughness below 0.05 is taken for that"},
     {"KHR_materials_emissive_strength", Status::exact, "factor times strength is radiance in W/(m^2 sr)"},
@@ -55,6 +58,9 @@ constexpr ExtensionEntry extensions[] = {
      "the mesh is the boundary, so thickness only tells volumes from thin walls; the smaller of two volumes "
      "that "
      "overlap is there"},
+    {"KHR_materials_volume_scatter", Status::exact,
+     "draft of July 2025; light walks at random below the surface, the multiple-scattering color becomes the "
+     "albedo of one scattering as the draft says"},
     {"KHR_materials_variants", Status::exact, "one variant at a time, by name"},
     {"KHR_meshopt_compression", Status::exact, "as far as the library decodes it, else refused"},
     {"KHR_mesh_quantization", Status::exact, ""},

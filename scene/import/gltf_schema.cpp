@@ -66,6 +66,13 @@ struct GltfSchema {
                              {"attenuationDistance", number()},
                              {"attenuationColor", numbers(3)}},
                             {}};
+  const ObjectSchema volume_scatter{{{"multiscatterColor", numbers(3)}, {"scatterAnisotropy", number()}}, {}};
+  const ObjectSchema scatter{{{"scatterStrengthFactor", number()},
+                              {"scatterStrengthTexture", texture},
+                              {"multiscatterColorFactor", numbers(3)},
+                              {"multiscatterColorTexture", texture},
+                              {"scatterAnisotropy", number()}},
+                             {}};
   const ObjectSchema clearcoat{{{"clearcoatFactor", number()},
                                 {"clearcoatTexture", texture},
                                 {"clearcoatRoughnessFactor", number()},
@@ -109,11 +116,13 @@ struct GltfSchema {
        {"KHR_materials_ior", object(ior)},
        {"KHR_materials_iridescence", object(iridescence)},
        {"KHR_materials_pbrSpecularGlossiness", object(specular_glossiness)},
+       {"KHR_materials_scatter", object(scatter)},
        {"KHR_materials_sheen", object(sheen)},
        {"KHR_materials_specular", object(specular)},
        {"KHR_materials_transmission", object(transmission)},
        {"KHR_materials_unlit", object(empty)},
-       {"KHR_materials_volume", object(volume)}},
+       {"KHR_materials_volume", object(volume)},
+       {"KHR_materials_volume_scatter", object(volume_scatter)}},
       {}};
   const ObjectSchema metallic_roughness{{{"baseColorFactor", numbers(4)},
                                          {"baseColorTexture", texture},

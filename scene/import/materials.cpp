@@ -55,6 +55,15 @@ bool is_true(const tinygltf::Value& object, const char* member) {
          object.Get(member).Get<bool>();
 }
 
+/// Albedo of a single scattering in a medium of which a thick body reflects `multiple` (Kulla and Conty 2017,
+/// "Revisiting Physically Based Shading at Imageworks", as KHR_materials_volume_scatter and, with the mean
+/// cosine g, KHR_materials_scatter have it).
+float single_scattering_albedo(float multiple, float g) {
+  const float root = std::sqrt(9.59217f + 41.6808f * multiple + 17.7126f * square(multiple));
+  const float s2 = square(4.09712f + 4.20863f * multiple - root);
+  return std::clamp((1 - s2) / (1 - g * s2), 0.f, 1.f);
+}
+
 class MaterialReader {
  public:
   MaterialReader(const Document& document, size_t index, std::vector<RoughnessFromGlossiness>& derived,
@@ -167,6 +176,7 @@ class MaterialReader {
       warn("an attenuationDistance of 0 or less is taken for none: the volume does not absorb");
     result_.attenuation_color =
         unit(volume.color("attenuationColor", result_.attenuation_color), "attenuationColor");
+    read_scattering();
     result_.dispersion =
         not_negative(extension("KHR_materials_dispersion").number("dispersion", 0), "dispersion");
     const Members diffuse = extension("KHR_materials_diffuse_transmission");
@@ -177,6 +187,32 @@ class MaterialReader {
         unit(diffuse.color("diffuseTransmissionColorFactor", result_.diffuse_transmission_color),
              "diffuseTransmissionColorFactor");
     result_.diffuse_transmission_color_texture = texture(diffuse, "diffuseTransmissionColorTexture");
+  }
+
+  /// Two drafts of one thing, the later of which scales the color.
+  void read_scattering() {
+    const Members first = extension("KHR_materials_volume_scatter"),
+                  later = extension("KHR_materials_scatter");
+    if (!first.exist() && !later.exist()) return;
+    const Members& scatter = later.exist() ? later : first;
+    const char* color_name = later.exist() ? "multiscatterColorFactor" : "multiscatterColor";
+    Rgb color = unit(scatter.color(color_name, Rgb(later.exist() ? 1.f : 0.f)), color_name);
+    if (later.exist()) color *= unit(later.number("scatterStrengthFactor", 0), "scatterStrengthFactor");
+    constexpr float most = 0.999f;
+    const float anisotropy = scatter.number("scatterAnisotropy", 0);
+    if (!(std::abs(anisotropy) <= most)) clamped("scatterAnisotropy");
+    result_.scattering_anisotropy = std::clamp(anisotropy, -most, most);
+    for (const char* slot : {"multiscatterColorTexture", "scatterStrengthTexture"})
+      if (later.find(slot)) warn(fmt::format("{} is not used: a volume is the same all through", slot));
+    if (is_black(color)) return;
+    if (result_.thickness <= 0)
+      return warn(
+          "scattering is of volumes alone here, and the material is thin-walled (KHR_materials_volume)");
+    if (!std::isfinite(result_.attenuation_distance) || result_.attenuation_color == Rgb(1, 1, 1))
+      return warn("nothing is scattered: attenuationColor and attenuationDistance take nothing from light");
+    for (int c = 0; c < 3; ++c)
+      result_.scattering_albedo[c] =
+          single_scattering_albedo(color[c], later.exist() ? result_.scattering_anisotropy : 0);
   }
 
   void read_coats() {

@@ -24,7 +24,8 @@ struct LightSample {
   float pdf = 0;          ///< per solid angle; 1 for a delta light
   bool is_delta = false;  ///< cannot be met by a ray
   Ray shadow;             ///< from the point to the light: what lies on it takes its part
-  LightSource source;     ///< set by Scene::sample_light
+  LightSource source;     ///< this and the next are set by Scene::sample_light
+  float choice_prob = 1;  ///< of having chosen the light among all, in `pdf` or `radiance` already
 };
 
 /// Light met along a direction, and how sample() would have produced it.

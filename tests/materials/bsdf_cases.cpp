@@ -251,6 +251,15 @@ void add_layers(CaseList& list) {
   pane.reciprocal = false;
 }
 
+void add_media(CaseList& list) {
+  for (const float g : {0.f, 0.0005f, 0.3f, 0.8f, -0.6f}) {
+    BsdfCase& medium = list.add(fmt::format("medium of mean cosine {}", g), HenyeyGreenstein{g}, ggx(1));
+    medium.width = 1 - double(std::abs(g));
+    medium.transmits = medium.lossless = true;
+    medium.reciprocal = false;  // of a density without a cosine
+  }
+}
+
 }  // namespace
 
 std::vector<BsdfCase> bsdf_cases() {
@@ -266,6 +275,7 @@ std::vector<BsdfCase> bsdf_cases() {
   add_dispersion(list);
   add_partly_matched_dispersion(list);
   add_layers(list);
+  add_media(list);
   return list.cases;
 }
 

@@ -81,7 +81,7 @@ TEST(Material, DiffuseTransmissionAloneBoundsAVolume) {
                      }),
                      {}, false);
   EXPECT_TRUE(wax.transmits() && wax.is_volume_boundary());
-  EXPECT_NEAR(wax.absorption().x, std::log(2.f) / 2, 1e-6f);
+  EXPECT_NEAR(wax.extinction().x, std::log(2.f) / 2, 1e-6f);
   // Pure diffuse transmission bends nothing, so radiance is not compressed either.
   const auto through = wax.bsdf({}, {}).sample({0, 0, 1}, 0.999f, {0.4f, 0.7f});
   ASSERT_TRUE(through && through->is_transmitted());

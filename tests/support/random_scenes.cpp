@@ -158,6 +158,9 @@ class Maker {
     m.attenuation_distance = between(0.2f, 2);
     m.attenuation_color = color(0.2f, 1);
     if (chance(0.2f)) m.dispersion = between(0, 5);
+    if (!chance(0.3f)) return;
+    m.scattering_albedo = color(0.3f, 1);
+    m.scattering_anisotropy = chance(0.3f) ? 0 : between(-0.6f, 0.8f);
   }
 
   void lights() {
@@ -214,6 +217,13 @@ json matrix(const Transform& t) {
 
 json array_of(const Rgb& c) { return {c.x, c.y, c.z}; }
 
+/// What KHR_materials_volume_scatter calls a medium of that single-scattering albedo: its formula solved for
+/// the color, whose square terms cancel.
+float multiscatter_color(float albedo) {
+  const float k = 4.09712f - std::sqrt(1 - albedo);
+  return std::clamp((9.59217f - k * k) / (8.41726f * k - 41.6808f), 0.f, 1.f);
+}
+
 json material_json(const MaterialDescription& m) {
   json j{{"doubleSided", m.double_sided},
          {"alphaMode", m.alpha_mode == AlphaMode::opaque ? "OPAQUE"
@@ -235,6 +245,11 @@ json material_json(const MaterialDescription& m) {
     extensions["KHR_materials_volume"] = {{"thicknessFactor", m.thickness},
                                           {"attenuationDistance", m.attenuation_distance},
                                           {"attenuationColor", array_of(m.attenuation_color)}};
+  if (const Rgb& albedo = m.scattering_albedo; !is_black(albedo))
+    extensions["KHR_materials_volume_scatter"] = {
+        {"multiscatterColor",
+         {multiscatter_color(albedo.x), multiscatter_color(albedo.y), multiscatter_color(albedo.z)}},
+        {"scatterAnisotropy", m.scattering_anisotropy}};
   if (m.diffuse_transmission > 0)
     extensions["KHR_materials_diffuse_transmission"] = {
         {"diffuseTransmissionFactor", m.diffuse_transmission},

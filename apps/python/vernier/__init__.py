@@ -19,12 +19,12 @@ from ._image import ErrorEstimate, Image, Missing, MissingFigure, compare, merge
 from ._notices import Notice
 from ._parts import Light, Material, Mesh
 from ._render import LAYERS_FOR_DENOISING, Progress, Session, Settings, render
-from ._scene import Feature, Scene, load
+from ._scene import Feature, Fog, Scene, load
 
 __version__: str = _core.version
 
 __all__ = [
-    "Camera", "Error", "ErrorEstimate", "Feature", "Image", "InputError", "LAYERS_FOR_DENOISING", "Light", "Material",
-    "Mesh", "Missing", "MissingFigure", "Notice", "OutOfMemoryError", "OutputError", "Progress", "Scene", "Session",
+    "Camera", "Error", "ErrorEstimate", "Feature", "Fog", "Image", "InputError", "LAYERS_FOR_DENOISING", "Light",
+    "Material", "Mesh", "Missing", "MissingFigure", "Notice", "OutOfMemoryError", "OutputError", "Progress", "Scene", "Session",
     "Settings", "UsageError", "compare", "glb", "load", "merge", "read", "render", "to_display",
 ]

@@ -14,7 +14,7 @@ from ._camera import Camera, settings_with
 from ._errors import UsageError
 from ._image import ErrorEstimate, Image
 from ._notices import logged
-from ._scene import EnvLike, Environment, Request, Scene
+from ._scene import EnvLike, Environment, Fog, Kind, Request, Scene
 
 LAYERS_FOR_DENOISING: tuple[str, ...] = tuple(_core.layers_for_denoising.split(","))
 """Layers that Image.denoise() wants."""
@@ -39,6 +39,8 @@ class Settings(TypedDict, total=False):
     picture file. None: the surroundings."""
     ground: str | None
     """Under the scene: "matte", a grey plane, or "shadow", of which only its shadow shows (None)."""
+    fog: Fog | float | None
+    """What fills the air and scatters light; a number is its density per metre (None: nothing)."""
     integrator: str
     """"path", "whitted" or "raycast" ("path")."""
     max_depth: int
@@ -101,6 +103,11 @@ def _background(value: str | os.PathLike[str] | Sequence[float] | None) -> dict[
     return result | {"kind": "color", "color": color}
 
 
+def _fog(value: Fog | float | None) -> Fog | None:
+    fog = value if isinstance(value, Fog) or value is None else Fog(float(value))
+    return fog if fog and fog.density != 0 else None
+
+
 def _request(scene: Scene, given: Settings) -> Request:
     """Raises UsageError on settings that there are not, or that cannot be."""
     for name in given:
@@ -125,7 +132,8 @@ def _request(scene: Scene, given: Settings) -> Request:
     settings["light-split"] = {"ways": [str(way) for way in given.get("light_ways", ())],
                                "groups": [{"name": name, "lights": list(lights)} for name, lights in groups.items()]}
     env = Environment(given.get("env"), given.get("env_rotation", 0.0), given.get("env_scale", 1.0))
-    return Request(settings, env, given.get("ground") or "", str(given.get("accelerator", "")), camera.name)
+    kind = Kind(given.get("ground") or "", str(given.get("accelerator", "")), _fog(given.get("fog")))
+    return Request(settings, env, kind, camera.name)
 
 
 class Session:

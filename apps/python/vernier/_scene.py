@@ -46,12 +46,34 @@ class _Reading:
     strict: bool = False
 
 
+@dataclass(frozen=True)
+class Fog:
+    """What scatters light all over a scene, as ``--fog`` has it."""
+
+    density: float
+    """Per metre: part of the light that a short way takes, over its length."""
+    albedo: float | tuple[float, float, float] = 1.0
+    """Part of it that is scattered rather than absorbed, 0 to 1, scene-linear."""
+    anisotropy: float = 0.0
+    """Mean cosine of the deflection, in (-1, 1)."""
+    radius: float = 0.0
+    """Metres, of the ball about the scene's center that it fills; 0: four times the scene's."""
+
+
+class Kind(NamedTuple):
+    """What a scene is built with."""
+
+    ground: str = ""
+    accelerator: str = ""
+    fog: Fog | None = None
+
+
 @dataclass(eq=False)
 class _Slot:
     """A built scene, what is around it, and who renders it."""
 
     built: _core.BuiltScene
-    kind: tuple[str, str]  # its ground and its accelerator
+    kind: Kind
     around: object = None  # equal ones mean the same surroundings
     name: str = ""
     users: weakref.WeakSet[Any] = field(default_factory=weakref.WeakSet)
@@ -74,7 +96,7 @@ class Scene:
         self._file, self._file_lock, self._reading = file, file_lock, reading
         self._lock = threading.Lock()
         self._slots: list[_Slot] = []
-        built = self._add_slot(("", "")).built
+        built = self._add_slot(Kind()).built
         self._cameras = [(camera_from_settings(settings), defect) for settings, defect in built.cameras]
         self.source: str = built.source
         self.hash: str = built.hash
@@ -128,17 +150,22 @@ class Scene:
             raise InputError(defect)
         return camera if camera.name else replace(camera, name=str(index))
 
-    def _build(self, kind: tuple[str, str]) -> _core.BuiltScene:
+    def _build(self, kind: Kind) -> _core.BuiltScene:
         reading = self._reading
         with self._file_lock:
-            return _core.BuiltScene(self._file, reading.variant, reading.time, reading.animation, reading.strict, *kind)
+            built = _core.BuiltScene(self._file, reading.variant, reading.time, reading.animation, reading.strict,
+                                     kind.ground, kind.accelerator)
+        if fog := kind.fog:
+            albedo = fog.albedo if isinstance(fog.albedo, tuple) else (fog.albedo,) * 3
+            built.fill_air(fog.density, albedo, fog.anisotropy, fog.radius)
+        return built
 
-    def _add_slot(self, kind: tuple[str, str]) -> _Slot:
+    def _add_slot(self, kind: Kind) -> _Slot:
         slot = _Slot(self._build(kind), kind)
         self._slots.append(slot)
         return slot
 
-    def _slot_with(self, kind: tuple[str, str], around: object) -> _Slot:
+    def _slot_with(self, kind: Kind, around: object) -> _Slot:
         """One that has these surroundings or may get them, since nobody renders it."""
         alike = [slot for slot in self._slots if slot.kind == kind]
         for slot in alike:
@@ -153,7 +180,7 @@ class Scene:
         """A session of it: what ``make`` makes of one of libvernier."""
         with self._lock:
             around = request.env.key(request)
-            slot = self._slot_with((request.ground, request.accelerator), around)
+            slot = self._slot_with(request.kind, around)
             if slot.around != around:
                 slot.around = None  # until it is there
                 slot.name = request.env.put_around(slot.built, request)
@@ -241,8 +268,7 @@ class Request:
 
     settings: dict[str, Any]
     env: Environment
-    ground: str
-    accelerator: str
+    kind: Kind
     camera: str
     notices: list[Notice] = field(default_factory=list)
     surroundings: str = ""
