@@ -121,6 +121,8 @@ void Scene::collect_lights(const SceneDescription& description) {
     if (light->power(bounds()) > 0) add(std::move(light));
   }
   if (description.environment) add_environment(description.environment, lights);
+  moves_ = geometry_.moves() || std::any_of(description.lights.begin(), description.lights.end(),
+                                            [](const auto& lamp) { return !lamp.moments.empty(); });
   lights_ = LightSet(std::move(lights));
   collect_ground_light();
 }

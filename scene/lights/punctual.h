@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "scene/lights/light.h"
 #include "vernier/scene.h"
 
@@ -18,8 +20,16 @@ class PunctualLight : public Light {
   bool is_delta() const override { return true; }
 
  private:
+  /// Where it is, and where spot and directional lights shine to.
+  struct Place {
+    Vec3f position, direction;
+  };
+  Place place_at(float time) const;
+  LightBounds bounds_at(const Place& place) const;
+
   PunctualLightDescription::Kind kind_;
-  Vec3f position_, direction_;  ///< direction: where spot and directional lights shine to
+  Place place_;                 ///< in the middle of the shutter
+  std::vector<Place> moments_;  ///< empty: it stands still
   Rgb intensity_;
   float range_, cos_inner_, cos_outer_;
 };
