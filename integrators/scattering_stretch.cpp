@@ -33,6 +33,7 @@ Interaction ScatteringStretch::vertex_at(float t) const {
   at.position = segment_.ray.at(t);
   at.error = at.ng = Vec3f(0, 0, 0);
   at.t = t;
+  at.time = segment_.ray.time;
   at.instance = at.primitive = TriangleId::none;
   return at;
 }
@@ -61,7 +62,7 @@ std::optional<ScatteringStretch::LitVertex> ScatteringStretch::sample_lit(float 
 
 float ScatteringStretch::weight(const LightSample& light) const {
   if (!lamps_ || light.source.kind != LightSource::Kind::lamp) return 1;
-  return power_heuristic(flight_.pdf(t_ - begin_) * light.choice_prob, lamps_->pdf(light.source.index, t_));
+  return power_heuristic(flight_.pdf(t_ - begin_) * light.choice_prob, lamps_->pdf(light.light, t_));
 }
 
 }  // namespace vernier

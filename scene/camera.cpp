@@ -1,81 +1,116 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/camera.h"
 
+#include <ImathMatrixAlgo.h>
+
+#include "core/math/moments.h"
+
 namespace vernier {
 
 Camera::Camera(const CameraDescription& d, int width, int height)
     : kind_(d.kind),
-      origin_(d.to_world.origin),
+      place_(place_of(d.to_world)),
       width_(float(width)),
       height_(float(height)),
       lens_radius_(d.lens_radius),
       inverse_focus_(1 / d.focus_distance) {
-  // Scale and shear of a camera's node do not count (glTF 2.0, 3.10.2): only where it is and where it looks.
-  back_ = normalize(d.to_world.z);
-  right_ = normalize(cross(d.to_world.y, back_));
-  up_ = cross(back_, right_);
   const float vertical = kind_ == CameraDescription::Kind::perspective ? std::tan(d.yfov / 2) : d.ymag;
   half_extent_ = {vertical * width_ / height_, vertical};
+  for (const Transform& to_world : d.moments) {
+    const auto [origin, right, up, back] = place_of(to_world);
+    const Imath::M44f axes(right.x, right.y, right.z, 0, up.x, up.y, up.z, 0, back.x, back.y, back.z, 0, 0, 0,
+                           0, 1);
+    Moment moment{origin, Imath::extractQuat(axes).normalized()};
+    if (moves() && (moment.rotation ^ moments_.back().rotation) < 0) moment.rotation = -moment.rotation;
+    moments_.push_back(moment);
+  }
+}
+
+/// Scale and shear of a camera's node do not count (glTF 2.0, 3.10.2): only where it is and where it looks.
+Camera::Place Camera::place_of(const Transform& to_world) {
+  const Vec3f back = normalize(to_world.z);
+  const Vec3f right = normalize(cross(to_world.y, back));
+  return {to_world.origin, right, cross(back, right), back};
+}
+
+/// Turns at constant speed from one moment to the next (Shoemake 1985, "Animating Rotation with Quaternion
+/// Curves").
+Camera::Place Camera::place_at(float time) const {
+  if (!moves()) return place_;
+  const auto [first, part] = moments_around(time, moments_.size());
+  const Moment &from = moments_[first], &to = moments_[first + 1];
+  const Imath::M33f axes = Imath::slerp(from.rotation, to.rotation, part).toMatrix33();
+  const auto axis = [&](int i) { return Vec3f(axes[i][0], axes[i][1], axes[i][2]); };
+  return {between(from.origin, to.origin, part), axis(0), axis(1), axis(2)};
 }
 
 Vec2f Camera::on_image_plane(const Vec2f& raster) const {
   return {(2 * raster.x / width_ - 1) * half_extent_.x, (1 - 2 * raster.y / height_) * half_extent_.y};
 }
 
-/// Positions beyond a pole go on on its other side, as a filter that reaches there wants.
-Vec3f Camera::panorama_direction(const Vec2f& raster) const {
-  const float azimuth = 2 * pi * (raster.x / width_ - 0.5f), from_up = pi * raster.y / height_;
-  const float across = std::sin(from_up);
-  return right_ * (std::cos(azimuth) * across) + up_ * std::cos(from_up) +
-         back_ * (std::sin(azimuth) * across);
+Ray Camera::ray(const Vec2f& raster) const { return ray(place_, raster); }
+Ray Camera::ray(const Vec2f& raster, const Vec2f& on_lens) const { return ray(place_, raster, on_lens); }
+
+Ray Camera::ray(const Vec2f& raster, const std::optional<Vec2f>& on_lens, float time) const {
+  const Place place = place_at(time);
+  Ray result = on_lens ? ray(place, raster, *on_lens) : ray(place, raster);
+  result.time = time;
+  return result;
 }
 
-Ray Camera::ray(const Vec2f& raster) const {
+Ray Camera::ray(const Place& place, const Vec2f& raster) const {
+  const auto& [origin, right, up, back] = place;
   const auto [x, y] = on_image_plane(raster);
   Ray ray;
-  ray.origin = origin_;
+  ray.origin = origin;
   switch (kind_) {
     case CameraDescription::Kind::perspective:
-      ray.direction = normalize(right_ * x + up_ * y - back_);
+      ray.direction = normalize(right * x + up * y - back);
       break;
     case CameraDescription::Kind::orthographic:
-      ray.origin = origin_ + right_ * x + up_ * y;
-      ray.direction = -back_;
+      ray.origin = origin + right * x + up * y;
+      ray.direction = -back;
       break;
-    case CameraDescription::Kind::panorama:
-      ray.direction = normalize(panorama_direction(raster));
+    case CameraDescription::Kind::panorama: {
+      // Positions beyond a pole go on on its other side, as a filter that reaches there wants.
+      const float azimuth = 2 * pi * (raster.x / width_ - 0.5f), from_up = pi * raster.y / height_;
+      const float across = std::sin(from_up);
+      ray.direction = normalize(right * (std::cos(azimuth) * across) + up * std::cos(from_up) +
+                                back * (std::sin(azimuth) * across));
       break;
+    }
   }
   return ray;
 }
 
-Ray Camera::ray(const Vec2f& raster, const Vec2f& on_lens) const {
+Ray Camera::ray(const Place& place, const Vec2f& raster, const Vec2f& on_lens) const {
   const Vec2f at = on_image_plane(raster), shift = on_lens * lens_radius_;
   // The point in focus, seen from `shift`, over its distance: this holds for infinite ones too.
   const Vec2f slope = at - shift * inverse_focus_;
   Ray ray;
-  ray.origin = origin_ + right_ * shift.x + up_ * shift.y;
-  ray.direction = normalize(right_ * slope.x + up_ * slope.y - back_);
+  ray.origin = place.origin + place.right * shift.x + place.up * shift.y;
+  ray.direction = normalize(place.right * slope.x + place.up * slope.y - place.back);
   return ray;
 }
 
 float Camera::depth(const Ray& ray, float t) const {
-  return kind_ == CameraDescription::Kind::panorama ? t : -t * dot(ray.direction, back_);
+  return kind_ == CameraDescription::Kind::panorama ? t : -t * dot(ray.direction, place_.back);
 }
 
 std::optional<Vec2f> Camera::project(const Vec3f& world) const {
-  const Vec3f d = world - origin_;
+  const Vec3f d = world - place_.origin;
   if (kind_ == CameraDescription::Kind::panorama) {
     if (!(length(d) > 0)) return std::nullopt;
-    const float ahead = dot(d, right_), aside = dot(d, back_);
+    const float ahead = dot(d, place_.right), aside = dot(d, place_.back);
     const float u = std::atan2(aside, ahead) * (inv_pi / 2) + 0.5f;
-    const float v = std::atan2(std::hypot(ahead, aside), dot(d, up_)) * inv_pi;
+    const float v = std::atan2(std::hypot(ahead, aside), dot(d, place_.up)) * inv_pi;
     return Vec2f(u * width_, v * height_);
   }
-  const float depth = -dot(d, back_);
+  const float depth = -dot(d, place_.back);
   if (!(depth > 0)) return std::nullopt;
   const float scale = kind_ == CameraDescription::Kind::perspective ? 1 / depth : 1;
-  const float x = dot(d, right_) * scale / half_extent_.x, y = dot(d, up_) * scale / half_extent_.y;
+  const float x = dot(d, place_.right) * scale / half_extent_.x,
+              y = dot(d, place_.up) * scale / half_extent_.y;
   return Vec2f((x + 1) / 2 * width_, (1 - y) / 2 * height_);
 }
 

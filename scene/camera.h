@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <ImathQuat.h>
+
 #include <optional>
+#include <vector>
 
 #include "core/math/ray.h"
 #include "vernier/scene.h"
@@ -11,6 +14,7 @@ namespace vernier {
 /// A camera for a picture of width x height pixels. Raster x runs right, y down, (0,0) the outer corner of
 /// the first pixel; positions outside of the picture are as good as those in it. The vertical extent is the
 /// description's; the horizontal follows the picture's shape (square pixels). A panorama is stretched to it.
+/// Where no time is given, it stands where it does in the middle of the shutter.
 class Camera {
  public:
   Camera(const CameraDescription& description, int width, int height);
@@ -24,6 +28,10 @@ class Camera {
   /// "Distributed Ray Tracing") whose angle of view does not change with its focus.
   Ray ray(const Vec2f& raster, const Vec2f& on_lens) const;
 
+  bool moves() const { return !moments_.empty(); }
+  /// The same rays at a time of the shutter; without a point of the lens, through its centre.
+  Ray ray(const Vec2f& raster, const std::optional<Vec2f>& on_lens, float time) const;
+
   /// Raster position of a world point, seen from the lens's centre; empty when it is not in front of the
   /// camera.
   std::optional<Vec2f> project(const Vec3f& world) const;
@@ -33,12 +41,26 @@ class Camera {
   float depth(const Ray& ray, float t) const;
 
  private:
+  /// Where it is, and its axes: orthonormal, world.
+  struct Place {
+    Vec3f origin, right, up, back;
+  };
+  /// The same between moments; of q and -q the one nearer to the moment before.
+  struct Moment {
+    Vec3f origin;
+    Imath::Quatf rotation;
+  };
+
+  static Place place_of(const Transform& to_world);
+  Place place_at(float time) const;
   Vec2f on_image_plane(const Vec2f& raster) const;
-  Vec3f panorama_direction(const Vec2f& raster) const;
+  Ray ray(const Place& place, const Vec2f& raster) const;
+  Ray ray(const Place& place, const Vec2f& raster, const Vec2f& on_lens) const;
 
   CameraDescription::Kind kind_;
-  Vec3f origin_, right_, up_, back_;  ///< orthonormal, world
-  Vec2f half_extent_;                 ///< of the image plane: at unit distance, or in metres for orthographic
+  Place place_;                  ///< in the middle of the shutter
+  std::vector<Moment> moments_;  ///< empty: it stands still
+  Vec2f half_extent_;            ///< of the image plane: at unit distance, or in metres for orthographic
   float width_, height_;
   float lens_radius_, inverse_focus_;  ///< metres, one over metres
 };

@@ -111,11 +111,14 @@ void turn(CameraDescription& camera, const Vec3f& back, const Vec3f& up) {
 
 void roll(CameraDescription& camera, float angle) {
   if (angle == 0) return;
-  Transform& place = camera.to_world;
-  const Vec3f back = normalize(place.z), right = normalize(cross(place.y, back)), up = cross(back, right);
-  place.x = right * std::cos(angle) - up * std::sin(angle);
-  place.y = up * std::cos(angle) + right * std::sin(angle);
-  place.z = back;
+  const auto roll_frame = [&](Transform& place) {
+    const Vec3f back = normalize(place.z), right = normalize(cross(place.y, back)), up = cross(back, right);
+    place.x = right * std::cos(angle) - up * std::sin(angle);
+    place.y = up * std::cos(angle) + right * std::sin(angle);
+    place.z = back;
+  };
+  roll_frame(camera.to_world);
+  for (Transform& moment : camera.moments) roll_frame(moment);
 }
 
 CameraDescription aimed_camera(const Subject& subject, const FittedView& view) {

@@ -3,6 +3,8 @@
 
 #include "core/base/parallel.h"
 #include "core/math/frame.h"
+#include "core/math/moments.h"
+#include "scene/moving_mesh.h"
 
 namespace vernier {
 namespace {
@@ -17,10 +19,42 @@ void pad(std::vector<Vec3f>& positions) { positions.reserve(positions.size() + 2
 
 Vec3f xyz(const Vec4f& v) { return {v.x, v.y, v.z}; }
 
-/// n scaled to unit length; `otherwise` when it has none.
-Vec3f unit_or(const Vec3f& n, const Vec3f& otherwise) {
-  const float length2 = length_squared(n);
-  return length2 > 0 && std::isfinite(length2) ? n * (1 / std::sqrt(length2)) : otherwise;
+/// The point of a triangle in the space of its mesh, its vertices known to within rounding of `roundings`
+/// operations on `magnitudes`.
+SurfacePoint point_of(const std::array<Vec3f, 3>& corners, const std::array<Vec3f, 3>& magnitudes,
+                      int roundings, const Vec2f& barycentrics) {
+  const auto& [p0, p1, p2] = corners;
+  const auto& [m0, m1, m2] = magnitudes;
+  SurfacePoint point;
+  point.u = barycentrics.x;
+  point.v = barycentrics.y;
+  const float w = 1 - point.u - point.v;
+  point.position = p0 * w + p1 * point.u + p2 * point.v;
+  point.error = (m0 * std::abs(w) + m1 * std::abs(point.u) + m2 * std::abs(point.v)) * gamma_bound(roundings);
+  point.ng = cross(p1 - p0, p2 - p0);
+  // Triangle tests find t from the vertices as seen from the origin, so they round by the triangle's size
+  // even where the point's own coordinates, and so their rounding, are nought. This much along the normal.
+  const float extent =
+      max_component(max(abs(p0 - point.position), max(abs(p1 - point.position), abs(p2 - point.position))));
+  const Vec3f n = abs(point.ng);
+  const float normal_share = length(n) / std::max(n.x + n.y + n.z, std::numeric_limits<float>::min());
+  point.error = max(point.error, Vec3f(gamma_bound(8) * extent * normal_share));
+  return point;
+}
+
+/// A point of a mesh that moves. Its vertices take three operations more, which accelerators may do in
+/// another order: hence the double share.
+SurfacePoint moving_point(const MeshDescription& mesh, const Triangle& triangle, const Vec2f& barycentrics,
+                          float time) {
+  const auto [first, part] = moments_around(time, mesh.moments.size());
+  const MeshShape &from = mesh.moments[first], &to = mesh.moments[first + 1];
+  std::array<Vec3f, 3> corners, magnitudes;
+  for (size_t k = 0; k < 3; ++k) {
+    const Vec3f &a = from.positions[triangle[k]], &b = to.positions[triangle[k]];
+    corners[k] = between(a, b, part);
+    magnitudes[k] = between(abs(a), abs(b), part);
+  }
+  return point_of(corners, magnitudes, 7 + 2 * 3, barycentrics);
 }
 
 }  // namespace
@@ -31,31 +65,55 @@ SceneGeometry::SceneGeometry(std::vector<MeshDescription> meshes,
   std::vector<uint32_t> uses(meshes_.size(), 0);
   for (const auto& instance : instances) ++uses[instance.mesh];
   for (const auto& description : instances) {
-    Instance instance{description.mesh, description.material, description.to_world, {}, false, 1};
+    Instance instance{description.mesh, description.material, description.to_world, {}, false, false, 1};
     const auto inverse = instance.to_world.inverse();
     instance.normal_inverse = inverse.value_or(Transform{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
     instance.orientation = instance.to_world.determinant() < 0 ? -1.f : 1.f;
     instance.is_identity = instance.to_world.is_identity();
     instances_.push_back(instance);
   }
+  for (size_t i = 0; i < instances_.size(); ++i) {
+    check_moments(meshes_[instances_[i].mesh], instances[i]);
+    instances_[i].moves = !instances[i].moments.empty() || !meshes_[instances_[i].mesh].moments.empty();
+    if (!instances_[i].moves || uses[instances_[i].mesh] == 1) continue;
+    // What moves has a mesh of its own, in world space.
+    --uses[instances_[i].mesh];
+    meshes_.push_back(meshes_[instances_[i].mesh]);
+    uses.push_back(1);
+    instances_[i].mesh = uint32_t(meshes_.size() - 1);
+  }
   parallel_for(instances_.size(), [&](size_t i) {
-    if (uses[instances_[i].mesh] == 1 && !instances_[i].is_identity) bake(instances_[i]);
+    const bool is_placed = !instances_[i].is_identity || !instances[i].moments.empty();
+    if (uses[instances_[i].mesh] == 1 && is_placed) bake(instances_[i], instances[i].moments);
   });
-  for (auto& mesh : meshes_) pad(mesh.positions);
-  for (uint32_t i = 0; i < instances_.size(); ++i)
-    for (const Vec3f& p : mesh_of(i).positions)
-      if (const Vec3f world = instances_[i].to_world.point(p); is_finite(world)) bounds_.add(world);
+  for (auto& mesh : meshes_) {
+    pad(mesh.positions);
+    for (MeshShape& shape : mesh.moments) pad(shape.positions);
+  }
+  for (uint32_t i = 0; i < instances_.size(); ++i) bounds_.add(bounds(i));
 }
 
-void SceneGeometry::bake(Instance& instance) {
+bool SceneGeometry::moves() const {
+  return std::any_of(instances_.begin(), instances_.end(), [](const Instance& i) { return i.moves; });
+}
+
+Bounds SceneGeometry::bounds(uint32_t instance) const {
+  Bounds bounds;
+  const Transform& to_world = instances_[instance].to_world;
+  const auto add = [&](const std::vector<Vec3f>& positions) {
+    for (const Vec3f& p : positions)
+      if (const Vec3f world = to_world.point(p); is_finite(world)) bounds.add(world);
+  };
+  const MeshDescription& mesh = mesh_of(instance);
+  add(mesh.positions);
+  for (const MeshShape& shape : mesh.moments) add(shape.positions);
+  return bounds;
+}
+
+void SceneGeometry::bake(Instance& instance, std::span<const Transform> moments) {
   MeshDescription& mesh = meshes_[instance.mesh];
-  const Transform& to_world = instance.to_world;
-  for (Vec3f& p : mesh.positions) p = to_world.point(p);
-  for (Vec3f& n : mesh.normals) n = unit_or(instance.normal_inverse.transposed_vector(n), {0, 0, 0});
-  for (Vec4f& t : mesh.tangents) {
-    const Vec3f moved = unit_or(to_world.vector(xyz(t)), {1, 0, 0});
-    t = {moved.x, moved.y, moved.z, t.w * instance.orientation};
-  }
+  if (instance.moves) mesh.moments = moments_in_world(mesh, instance.to_world, moments);
+  carry(instance.to_world, mesh.positions, mesh.normals, mesh.tangents);
   if (instance.orientation < 0)
     for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   instance.to_world = instance.normal_inverse = Transform{};
@@ -65,7 +123,10 @@ void SceneGeometry::bake(Instance& instance) {
 
 Geometry SceneGeometry::view() const {
   Geometry geometry;
-  for (const auto& mesh : meshes_) geometry.meshes.push_back({mesh.positions, mesh.triangles});
+  for (const auto& mesh : meshes_) {
+    GeometryMesh& view = geometry.meshes.emplace_back(GeometryMesh{mesh.positions, mesh.triangles});
+    for (const MeshShape& shape : mesh.moments) view.moments.emplace_back(shape.positions);
+  }
   for (const auto& instance : instances_)
     geometry.instances.push_back({instance.mesh, instance.to_world, false});
   return geometry;
@@ -93,30 +154,40 @@ std::array<Vec3f, 3> SceneGeometry::triangle(uint32_t instance, uint32_t primiti
   return corners;
 }
 
+std::array<Vec3f, 3> SceneGeometry::triangle(uint32_t instance, uint32_t primitive, float time) const {
+  if (!instances_[instance].moves) return triangle(instance, primitive);
+  const MeshDescription& mesh = mesh_of(instance);
+  const auto [first, part] = moments_around(time, mesh.moments.size());
+  const MeshShape &from = mesh.moments[first], &to = mesh.moments[first + 1];
+  std::array<Vec3f, 3> corners;
+  for (size_t k = 0; k < 3; ++k) {
+    const uint32_t vertex = mesh.triangles[primitive][k];
+    corners[k] = between(from.positions[vertex], to.positions[vertex], part);
+  }
+  return corners;
+}
+
 SurfacePoint SceneGeometry::surface_point(uint32_t instance, uint32_t primitive,
                                           const Vec2f& barycentrics) const {
+  return surface_point(instance, primitive, barycentrics, middle_of_shutter);
+}
+
+SurfacePoint SceneGeometry::surface_point(uint32_t instance, uint32_t primitive, const Vec2f& barycentrics,
+                                          float time) const {
   const Instance& placed = instances_[instance];
   const MeshDescription& mesh = meshes_[placed.mesh];
   const Triangle& indices = mesh.triangles[primitive];
-  const Vec3f p0 = mesh.positions[indices[0]], p1 = mesh.positions[indices[1]],
-              p2 = mesh.positions[indices[2]];
   SurfacePoint point;
-  point.u = barycentrics.x;
-  point.v = barycentrics.y;
+  if (placed.moves) [[unlikely]] {
+    point = moving_point(mesh, indices, barycentrics, time);
+  } else {
+    const Vec3f p0 = mesh.positions[indices[0]], p1 = mesh.positions[indices[1]],
+                p2 = mesh.positions[indices[2]];
+    point = point_of({p0, p1, p2}, {abs(p0), abs(p1), abs(p2)}, 7, barycentrics);
+  }
   point.instance = instance;
   point.primitive = primitive;
-  const float w = 1 - point.u - point.v;
-  point.position = p0 * w + p1 * point.u + p2 * point.v;
-  point.error =
-      (abs(p0) * std::abs(w) + abs(p1) * std::abs(point.u) + abs(p2) * std::abs(point.v)) * gamma_bound(7);
-  point.ng = cross(p1 - p0, p2 - p0);
-  // Triangle tests find t from the vertices as seen from the origin, so they round by the triangle's size
-  // even where the point's own coordinates, and so their rounding, are nought. This much along the normal.
-  const float extent =
-      max_component(max(abs(p0 - point.position), max(abs(p1 - point.position), abs(p2 - point.position))));
-  const Vec3f n = abs(point.ng);
-  const float normal_share = length(n) / std::max(n.x + n.y + n.z, std::numeric_limits<float>::min());
-  point.error = max(point.error, Vec3f(gamma_bound(8) * extent * normal_share));
+  point.time = time;
   if (!placed.is_identity) {
     // Rounding of the local point is carried through the map, and the map's own four products and sums added;
     // the vertices that the accelerator compares against go through the inverse of the same map, hence the
@@ -132,7 +203,7 @@ SurfacePoint SceneGeometry::surface_point(uint32_t instance, uint32_t primitive,
 }
 
 SurfacePoint SceneGeometry::surface_point(const Ray& ray, const RawHit& hit) const {
-  SurfacePoint point = surface_point(hit.instance, hit.primitive, {hit.u, hit.v});
+  SurfacePoint point = surface_point(hit.instance, hit.primitive, {hit.u, hit.v}, ray.time);
   point.t = hit.t;
   point.front = dot(ray.direction, point.ng) < 0;
   return point;
@@ -159,7 +230,15 @@ Vec3f SceneGeometry::shading_normal(const SurfacePoint& point) const {
   const Instance& placed = instances_[point.instance];
   const MeshDescription& mesh = meshes_[placed.mesh];
   if (mesh.normals.empty()) return point.ng;
-  Vec3f n = interpolate(mesh.normals, mesh.triangles[point.primitive], point.u, point.v);
+  const Triangle& triangle = mesh.triangles[point.primitive];
+  if (placed.moves) [[unlikely]] {
+    const auto [first, part] = moments_around(point.time, mesh.moments.size());
+    const MeshShape &from = mesh.moments[first], &to = mesh.moments[first + 1];
+    return unit_or(between(interpolate(from.normals, triangle, point.u, point.v),
+                           interpolate(to.normals, triangle, point.u, point.v), part),
+                   point.ng);
+  }
+  Vec3f n = interpolate(mesh.normals, triangle, point.u, point.v);
   if (!placed.is_identity) n = placed.normal_inverse.transposed_vector(n);
   return unit_or(n, point.ng);
 }
@@ -172,7 +251,15 @@ SceneGeometry::TangentFrame SceneGeometry::tangent_frame(const SurfacePoint& poi
   Vec3f tangent;
   float handedness;
   if (texcoord == 0 && !mesh.tangents.empty()) {
-    tangent = xyz(interpolate(mesh.tangents, triangle, point.u, point.v));
+    const auto tangent_in = [&](const std::vector<Vec4f>& tangents) {
+      return xyz(interpolate(tangents, triangle, point.u, point.v));
+    };
+    tangent = tangent_in(mesh.tangents);
+    if (placed.moves) {
+      const auto [first, part] = moments_around(point.time, mesh.moments.size());
+      tangent = between(tangent_in(mesh.moments[first].tangents),
+                        tangent_in(mesh.moments[first + 1].tangents), part);
+    }
     handedness = mesh.tangents[triangle[0]].w;
   } else {
     const auto& uv = mesh.texcoords[size_t(texcoord)];
@@ -181,8 +268,13 @@ SceneGeometry::TangentFrame SceneGeometry::tangent_frame(const SurfacePoint& poi
       return {frame.x, frame.y};
     }
     const Vec2f d1 = uv[triangle[1]] - uv[triangle[0]], d2 = uv[triangle[2]] - uv[triangle[0]];
-    const Vec3f e1 = mesh.positions[triangle[1]] - mesh.positions[triangle[0]];
-    const Vec3f e2 = mesh.positions[triangle[2]] - mesh.positions[triangle[0]];
+    Vec3f e1 = mesh.positions[triangle[1]] - mesh.positions[triangle[0]];
+    Vec3f e2 = mesh.positions[triangle[2]] - mesh.positions[triangle[0]];
+    if (placed.moves) {
+      const auto [a, b, c] = this->triangle(point.instance, point.primitive, point.time);
+      e1 = b - a;
+      e2 = c - a;
+    }
     const float determinant = d1.x * d2.y - d1.y * d2.x;
     // glTF's v runs down the picture, its tangent space's up: the bitangent follows -v.
     tangent = (e1 * d2.y - e2 * d1.y) * std::copysign(1.f, determinant);

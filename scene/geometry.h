@@ -12,14 +12,22 @@
 namespace vernier {
 
 /// The scene's triangles: meshes, their instances, and what lies at a point of one. A mesh with a single
-/// instance is moved into world space at construction, so that most scenes need one level only.
+/// instance is moved into world space at construction, so that most scenes need one level only; so is what
+/// moves, to where it is at each of its moments. Where no time is given, it is the middle of the shutter.
 class SceneGeometry {
  public:
+  /// Throws Error(usage) on moments that there cannot be.
   SceneGeometry(std::vector<MeshDescription> meshes, const std::vector<InstanceDescription>& instances);
 
   /// View of it for accelerators; valid as long as this object. No instance is filtered.
   Geometry view() const;
+  /// Over all of the shutter.
   const Bounds& bounds() const { return bounds_; }
+  Bounds bounds(uint32_t instance) const;
+
+  /// At how many moments it is known where an instance is; 0: it stands still.
+  size_t moments(uint32_t instance) const { return mesh_of(instance).moments.size(); }
+  bool moves() const;
 
   size_t instance_count() const { return instances_.size(); }
   size_t triangle_count(uint32_t instance) const { return mesh_of(instance).triangles.size(); }
@@ -32,10 +40,13 @@ class SceneGeometry {
 
   /// World-space corners of a triangle in winding order (counter-clockwise seen from its front).
   std::array<Vec3f, 3> triangle(uint32_t instance, uint32_t primitive) const;
+  std::array<Vec3f, 3> triangle(uint32_t instance, uint32_t primitive, float time) const;
 
   SurfacePoint surface_point(const Ray& ray, const RawHit& hit) const;
   /// Point of a triangle by barycentrics, with its error bound; t and front are not set.
   SurfacePoint surface_point(uint32_t instance, uint32_t primitive, const Vec2f& barycentrics) const;
+  SurfacePoint surface_point(uint32_t instance, uint32_t primitive, const Vec2f& barycentrics,
+                             float time) const;
 
   SurfaceAttributes attributes(const SurfacePoint& point) const;
 
@@ -56,11 +67,12 @@ class SceneGeometry {
     Transform to_world;
     Transform normal_inverse;  ///< inverse of to_world; its transposed_vector maps normals
     bool is_identity = true;
+    bool moves = false;     ///< its mesh has moments
     float orientation = 1;  ///< -1: to_world mirrors, and with it the winding
   };
 
   const MeshDescription& mesh_of(uint32_t instance) const { return meshes_[instances_[instance].mesh]; }
-  void bake(Instance& instance);
+  void bake(Instance& instance, std::span<const Transform> moments);
 
   std::vector<MeshDescription> meshes_;
   std::vector<Instance> instances_;

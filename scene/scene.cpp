@@ -121,13 +121,14 @@ void Scene::collect_lights(const SceneDescription& description) {
   for (uint32_t i = 0; i < description.lights.size(); ++i) {
     auto light = std::make_unique<PunctualLight>(description.lights[i]);
     light->set_source({LightSource::Kind::lamp, i});
-    const float power = light->power(bounds());
-    if (!(power > 0)) continue;
-    const bool has_place = light->bounds().has_value();
+    if (!(light->power(bounds()) > 0)) continue;
+    const PunctualLight& lamp = *light;
     const auto index = uint32_t(add(std::move(light)));
-    if (has_place) lamps_.add(description.lights[i], power, index, i);
+    if (lamp.bounds()) lamps_.add(lamp, index);
   }
   if (description.environment) add_environment(description.environment, lights);
+  moves_ = geometry_.moves() || std::any_of(description.lights.begin(), description.lights.end(),
+                                            [](const auto& lamp) { return !lamp.moments.empty(); });
   set_lights(std::move(lights));
 }
 
@@ -229,6 +230,7 @@ std::optional<LightSample> Scene::sample_light(const SurfacePoint& from, double 
   auto sample = light->sample(from, v);
   if (!sample) return std::nullopt;
   sample->source = light->source();
+  sample->light = light;
   sample->choice_prob = prob;
   if (sample->is_delta)
     sample->radiance /= prob;

@@ -92,6 +92,8 @@ class Scene {
   /// What the accelerator was built from, for building others beside it; valid as long as the scene.
   Geometry accelerated_geometry() const;
   const Bounds& bounds() const { return geometry_.bounds(); }
+  /// Whether it makes a difference when in the shutter a ray travels.
+  bool moves() const { return moves_; }
   const std::vector<Notice>& notices() const { return notices_; }
   const std::string& accelerator_name() const { return accelerator_name_; }
   /// What light depends on beside a camera, as names and values: the scene's hash, what was chosen of it, its
@@ -125,6 +127,7 @@ class Scene {
   const EnvironmentLight* environment_ = nullptr;
   int32_t environment_index_ = -1;
   Fog fog_;
+  bool moves_ = false;
   std::optional<GroundLight> ground_light_;  ///< where some material catches shadows
   std::vector<Notice> notices_;
 };

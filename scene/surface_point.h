@@ -17,7 +17,8 @@ struct SurfacePoint {
   float t = 0;         ///< ray parameter of the hit
   float u = 0, v = 0;  ///< barycentrics of vertices 1 and 2
   uint32_t instance = 0, primitive = 0;
-  bool front = true;  ///< met from the front side
+  bool front = true;               ///< met from the front side
+  float time = middle_of_shutter;  ///< at which it is there, as Ray::time
 
   TriangleId triangle() const { return {instance, primitive}; }
   bool is_in_medium() const { return instance == TriangleId::none; }
@@ -26,6 +27,7 @@ struct SurfacePoint {
   Ray spawn(const Vec3f& w) const {
     Ray ray{offset_ray_origin(position, error, ng, w), 0, w};
     ray.leaves = triangle();
+    ray.time = time;
     return ray;
   }
 

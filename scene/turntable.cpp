@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace vernier {
 namespace {
@@ -63,9 +64,31 @@ CameraDescription carried_around(CameraDescription camera, const Vec3f& center, 
   const auto turn = [&](const Vec3f& v) {
     return Vec3f(float(c * v.x + s * v.z), v.y, float(c * v.z - s * v.x));
   };
-  Transform& place = camera.to_world;
-  place = {turn(place.x), turn(place.y), turn(place.z), center + turn(place.origin - center)};
+  const auto carry_frame = [&](Transform& place) {
+    place = {turn(place.x), turn(place.y), turn(place.z), center + turn(place.origin - center)};
+  };
+  carry_frame(camera.to_world);
+  for (Transform& moment : camera.moments) carry_frame(moment);
   return camera;
+}
+
+CameraDescription carried_on(const CameraDescription& camera, const Vec3f& center, double from, double to) {
+  // Chords of two degrees are nowhere farther from the circle than 1/6500 of its radius.
+  constexpr double longest = 2 * std::numbers::pi / 180;
+  size_t segments = 1;
+  while (segments < most_moments - 1 && std::abs(to - from) > longest * double(segments)) segments *= 2;
+  segments = std::max(segments, std::max<size_t>(camera.moments.size(), 2) - 1);
+  CameraDescription carried = carried_around(camera, center, (from + to) / 2);
+  carried.moments.clear();
+  for (size_t i = 0; i <= segments; ++i) {
+    CameraDescription still = camera;
+    still.moments.clear();
+    // One that moves by itself is taken from the nearest of its own moments.
+    if (!camera.moments.empty()) still.to_world = camera.moments[i * (camera.moments.size() - 1) / segments];
+    const double angle = from + (to - from) * double(i) / double(segments);
+    carried.moments.push_back(carried_around(still, center, angle).to_world);
+  }
+  return carried;
 }
 
 }  // namespace vernier

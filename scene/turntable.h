@@ -31,5 +31,8 @@ CameraDescription fitted_turntable_camera(const Subject& subject, float aspect, 
 /// The camera carried around the upright axis through a point, toward +x as seen from +z: by a positive
 /// angle, in radians, as azimuths grow.
 CameraDescription carried_around(CameraDescription camera, const Vec3f& center, double angle);
+/// The camera carried from one angle to another at constant speed while the shutter is open; in its middle it
+/// is halfway.
+CameraDescription carried_on(const CameraDescription& camera, const Vec3f& center, double from, double to);
 
 }  // namespace vernier

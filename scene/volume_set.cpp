@@ -36,6 +36,14 @@ Enclosure enclosure_of(const SceneGeometry& geometry, const Group& group) {
   return {test.is_closed(), test.is_inward()};
 }
 
+/// Over all of the shutter.
+Bounds swept_bounds(const SceneGeometry& geometry, const Group& group) {
+  Bounds box = bounds_of(geometry, group);
+  for (const uint32_t i : group)
+    if (geometry.moments(i) > 0) box.add(geometry.bounds(i));
+  return box;
+}
+
 /// Candidates by object and material.
 std::map<std::pair<uint64_t, uint32_t>, Group> parts_of_objects(
     std::span<const InstanceDescription> instances, std::span<const MaterialDescription> materials) {
@@ -113,7 +121,7 @@ VolumeSet::VolumeSet(const VolumeBoundaries& boundaries, const SceneGeometry& ge
   const auto& closed = boundaries.closed;
   if (closed.empty()) return;
   std::vector<Bounds> boxes(closed.size());
-  parallel_for(closed.size(), [&](size_t i) { boxes[i] = bounds_of(geometry, closed[i].instances); });
+  parallel_for(closed.size(), [&](size_t i) { boxes[i] = swept_bounds(geometry, closed[i].instances); });
   // A box within another has less surface, whatever their shapes.
   std::vector<size_t> order(closed.size());
   std::iota(order.begin(), order.end(), 0);

@@ -21,11 +21,22 @@ std::unique_ptr<SceneFile> parse(const std::string& name, const py::bytes& bytes
   return std::make_unique<SceneFile>(name, data);
 }
 
-ImportOptions import_options(const std::string& variant, std::optional<double> time,
-                             const std::string& animation, bool strict) {
+/// When an animation poses the scene, in seconds, and when the shutter opens and closes from then on.
+struct Times {
+  std::optional<double> time;
+  std::optional<std::array<double, 2>> shutter;
+};
+
+ImportOptions import_options(const std::string& variant, const Times& times, const std::string& animation,
+                             bool strict) {
   ImportOptions options;
   options.variant = variant;
-  options.time = time;
+  options.time = times.time;
+  if (const auto& shutter = times.shutter) {
+    if (!((*shutter)[0] < (*shutter)[1]))
+      throw Error(ErrorKind::usage, "shutter: expected the seconds at which it opens and then closes");
+    options.shutter = Shutter{(*shutter)[0], (*shutter)[1]};
+  }
   options.animation = animation;
   options.strict = strict;
   return options;
@@ -102,14 +113,14 @@ py::list to_list(const std::vector<T>& all) {
 void bind_built(py::module_& module) {
   py::class_<BuiltScene, std::shared_ptr<BuiltScene>>(module, "BuiltScene")
       .def(py::init([](SceneFile& file, const std::string& variant, std::optional<double> time,
-                       const std::string& animation, bool strict, const std::string& ground,
-                       const std::string& accelerator) {
+                       std::optional<std::array<double, 2>> shutter, const std::string& animation,
+                       bool strict, const std::string& ground, const std::string& accelerator) {
              const py::gil_scoped_release unlocked;
-             return std::make_shared<BuiltScene>(file, import_options(variant, time, animation, strict),
-                                                 ground, accelerator);
+             const ImportOptions options = import_options(variant, {time, shutter}, animation, strict);
+             return std::make_shared<BuiltScene>(file, options, ground, accelerator);
            }),
-           py::arg("file"), py::arg("variant"), py::arg("time"), py::arg("animation"), py::arg("strict"),
-           py::arg("ground"), py::arg("accelerator"))
+           py::arg("file"), py::arg("variant"), py::arg("time"), py::arg("shutter"), py::arg("animation"),
+           py::arg("strict"), py::arg("ground"), py::arg("accelerator"))
       .def_readonly("source", &BuiltScene::source)
       .def_readonly("hash", &BuiltScene::hash)
       .def_readonly("objects", &BuiltScene::objects)

@@ -55,7 +55,7 @@ void CrossCheck::judge(const Difference& difference) const {
     if (!to_world.is_identity())
       if (const auto to_mesh = WorldToMesh::of(to_world))
         distortion = std::max(distortion, 2 * to_mesh->distortion(to_world));
-    return geometry_.triangle(hit->instance, hit->primitive);
+    return geometry_.triangle(hit->instance, hit->primitive, difference.ray.time);
   };
   const auto a = corners(difference.mine), b = corners(difference.other);
   const Excuse why = excuse(difference.ray, a, b, distortion);

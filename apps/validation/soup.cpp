@@ -28,6 +28,16 @@ uint32_t Soup::add_instance(uint32_t mesh, const Transform& to_world, bool filte
   return static_cast<uint32_t>(geometry_.instances.size() - 1);
 }
 
+void Soup::add_moving(const std::vector<std::vector<Vec3f>>& moments, std::vector<Triangle> triangles) {
+  const uint32_t mesh = add_mesh(moments[0], std::move(triangles));
+  for (const auto& positions : moments) {
+    positions_.push_back(positions);
+    positions_.back().resize(positions.size() + 2);
+    geometry_.meshes[mesh].moments.push_back(std::span(positions_.back()).first(positions.size()));
+  }
+  add_instance(mesh);
+}
+
 Corners Soup::corners(uint32_t instance, uint32_t primitive) const {
   const GeometryInstance& placed = geometry_.instances[instance];
   const GeometryMesh& mesh = geometry_.meshes[placed.mesh];

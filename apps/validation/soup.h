@@ -47,6 +47,9 @@ class Soup {
     add_instance(add_mesh(std::move(positions), std::move(triangles)));
   }
 
+  /// A mesh in world space that moves: its positions at each moment.
+  void add_moving(const std::vector<std::vector<Vec3f>>& moments, std::vector<Triangle> triangles);
+
   const Geometry& geometry() const { return geometry_; }
   void set_filter(const HitFilter* filter) { geometry_.filter = filter; }
   std::vector<Vec3f>& positions(uint32_t mesh) { return positions_[mesh]; }
@@ -55,7 +58,7 @@ class Soup {
   Corners corners(uint32_t instance, uint32_t primitive) const;
 
  private:
-  std::deque<std::vector<Vec3f>> positions_;  ///< by mesh, stay where they are
+  std::deque<std::vector<Vec3f>> positions_;  ///< by mesh where none moves; stay where they are
   std::deque<std::vector<Triangle>> triangles_;
   Geometry geometry_;
 };

@@ -91,10 +91,10 @@ void adjust_lens(CameraDescription& camera, const CameraFlags& flags, const Boun
 
 /// From where the camera stands, upright, so that --env shows the picture's directions where they are.
 void look_around(CameraDescription& camera) {
-  const Vec3f place = camera.to_world.origin;
   camera.kind = CameraDescription::Kind::panorama;
-  camera.to_world = {};
-  camera.to_world.origin = place;
+  const auto set_upright = [](Transform& place) { place = {.origin = place.origin}; };
+  set_upright(camera.to_world);
+  for (Transform& moment : camera.moments) set_upright(moment);
 }
 
 FittedView view_of(const CameraFlags& flags) {

@@ -18,7 +18,8 @@ namespace vernier::apps {
 namespace {
 
 /// Puts the views of a turntable, all from one camera, at the end of `views`.
-void add_sides(const View& view, const Vec3f& center, const RunPlan& plan, std::vector<View>& views) {
+void add_sides(const View& view, const Vec3f& center, const RunPlan& plan, const RenderFlags& flags,
+               std::vector<View>& views) {
   for (const auto side : plan.sides) {
     views.push_back(view);
     views.back().side = side;
@@ -28,6 +29,13 @@ void add_sides(const View& view, const Vec3f& center, const RunPlan& plan, std::
                             2 * std::numbers::pi * double(picture - 1) / plan.sides_around);
     };
     views.back().camera = camera_of(*side);
+    if (const auto& shutter = flags.import.shutter) {
+      const auto angle_of = [&](double seconds) {
+        return 2 * std::numbers::pi * (*side - 1 + seconds / frame_seconds(flags.run)) / plan.sides_around;
+      };
+      views.back().camera =
+          carried_on(view.camera, center, angle_of(shutter->open), angle_of(shutter->close));
+    }
     views.back().beside = {camera_of(*side - 1), camera_of(*side + 1)};
   }
 }
@@ -73,8 +81,12 @@ std::vector<View> PosedScene::views(const RenderFlags& flags, const RunPlan& pla
     view.front = view.camera;
     view.label = label.empty() ? view.camera.name : label;
     view.is_of_scene = camera.has_value();
-    add_sides(view, center, plan, views);
+    add_sides(view, center, plan, flags, views);
   }
+  const bool any_moves =
+      std::any_of(views.begin(), views.end(), [](const View& view) { return !view.camera.moments.empty(); });
+  if (flags.import.shutter && !scene_->moves() && !any_moves)
+    log.add({Notice::Severity::info, "--shutter", "nothing moves while it is open"});
   return views;
 }
 
@@ -117,10 +129,14 @@ NeighborPoses SceneLoader::neighbors(const RenderFlags& flags, const RunPlan& pl
     NoticeLog unsaid(true);  // what is to be said of the scene is said of the picture itself
     RenderFlags other = flags;
     other.import.time = seconds;
+    other.import.shutter.reset();
     const auto posed = pose(other, plan, unsaid);
     return {posed->scene(), posed->views(other, plan, unsaid)};
   };
-  const double time = flags.import.time.value_or(0), step = frame_seconds(flags.run);
+  // Where it is in a picture is where it is in the middle of the shutter.
+  const auto shutter = flags.import.shutter.value_or(Shutter{});
+  const double time = flags.import.time.value_or(0) + (shutter.open + shutter.close) / 2;
+  const double step = frame_seconds(flags.run);
   return {pose_at(time - step), pose_at(time + step)};
 }
 

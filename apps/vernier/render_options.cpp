@@ -65,6 +65,7 @@ RenderSettings make_settings(const RenderFlags& flags) {
   }
   make_integrator(options.integrator, options.integrator_options);  // or it throws
   options.filter = parse_filter(flags.filter);
+  options.row_exposure = row_exposure_of(flags.run.shutter);
   options.seed = flags.seed;
   if (!flags.time.empty()) options.limits.seconds = parse_seconds(flags.time);
   if (!flags.error.empty()) options.limits.error = parse_fraction(flags.error);

@@ -258,7 +258,8 @@ std::string RenderRun::command_for(const RenderFlags& picture, const View& view,
                                    const PictureName& name) const {
   std::map<std::string, std::string> instead;
   if (plan_.times[0]) instead["--at"] = fmt::format("{}", *picture.import.time);
-  if (shows_motion_ && picture.run.fps) instead["--fps"] = fmt::format("{}", *picture.run.fps);
+  const bool counts_frames = shows_motion_ || picture.import.shutter;
+  if (counts_frames && picture.run.fps) instead["--fps"] = fmt::format("{}", *picture.run.fps);
   if (plan_.all_variants) instead["--variant"] = name.variant;
   if (plan_.all_cameras) instead["--camera"] = view.is_of_scene ? view.label : "";
   if (view.side) instead["--frames"] = std::to_string(*view.side);

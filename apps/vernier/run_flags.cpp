@@ -43,6 +43,7 @@ void add_run_flags(CLI::App& command, RunFlags& flags) {
   command.add_option("--turntable", flags.turntable, "so many pictures from all around, at equal angles")
       ->transform(whole_number(1, 100'000))
       ->type_name("N");
+  add_shutter_flags(command, flags.shutter);
   command.add_flag("--skip-existing", flags.skip_existing,
                    "leave out pictures whose files are there and finished");
   command.add_flag("--keep-going", flags.keep_going,
@@ -80,8 +81,13 @@ void check_run_flags(const RunFlags& flags, const TimeFlags& others) {
   if (flags.fps && flags.turntable)
     refuse("--fps means nothing to --turntable, whose pictures show one moment; --at picks it");
   const bool has_neighbors = others.shows_motion && others.time_is_given;
-  if (flags.fps && flags.frames.empty() && !has_neighbors)
+  const bool counts_frames = has_neighbors || (!flags.shutter.shutter.empty() && others.time_is_given);
+  if (flags.fps && flags.frames.empty() && !counts_frames)
     refuse("--fps needs --frames; without it --at takes seconds");
+  if (!flags.shutter.shutter.empty() && !others.time_is_given && flags.frames.empty() && !flags.turntable)
+    refuse(
+        "--shutter blurs what moves, and without a time everything is at rest; add --frames, --at or "
+        "--turntable");
   if (others.shows_motion && !others.time_is_given && flags.frames.empty() && !flags.turntable)
     refuse(
         "--aov motion is about the pictures before and after, and there are none; add --frames, --at or "

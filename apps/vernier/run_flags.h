@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/vernier/commands.h"
+#include "apps/vernier/shutter_flags.h"
 
 namespace vernier::apps {
 
@@ -16,6 +17,7 @@ struct RunFlags {
   std::string frames;         ///< empty: none
   std::optional<double> fps;  ///< none: 24
   std::optional<int> turntable;
+  ShutterFlags shutter;
   bool skip_existing = false, keep_going = false, draft = false;
   std::string write_every;  ///< a time, or "never"; empty: every two seconds on a terminal
   std::string format;       ///< of the picture on standard output; empty: png

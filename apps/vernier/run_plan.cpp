@@ -173,6 +173,7 @@ RenderFlags flags_for(const RenderFlags& flags, const RunPlan& plan, const std::
   RenderFlags one = flags;
   one.scene = scene;
   one.import.variant = picture.variant;
+  one.import.shutter = shutter_of(flags.run.shutter, frame_seconds(flags.run));
   if (plan.times[0] && picture.frame)
     one.import.time = frame_time(*picture.frame, flags.run.fps.value_or(default_fps));
   for (size_t i = 0; i < one.outputs.size(); ++i) one.outputs[i] = plan.files.outputs[i].fill(picture);

@@ -46,7 +46,7 @@ uint64_t trace_paths(const Scene& scene, const validation::CrossCheck& check, co
                      uint64_t rays) {
   const auto integrator = make_integrator(settings.integrator, settings.integrator_options);
   const Camera camera(settings.camera, settings.width, settings.height);
-  const CameraSamples camera_samples(camera, settings);
+  const CameraSamples camera_samples(camera, scene, settings);
   uint64_t paths = 0;
   for (uint32_t index = 0; check.rays() < rays; ++index) {
     parallel_for(size_t(settings.height), [&](size_t y) {

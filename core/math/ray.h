@@ -15,6 +15,8 @@ struct TriangleId {
   bool operator==(const TriangleId&) const = default;
 };
 
+constexpr float middle_of_shutter = 0.5f;
+
 /// Half-line origin + t direction, for t in (t_min, t_max). The direction need not be a unit vector: t counts
 /// in its length.
 struct Ray {
@@ -25,6 +27,8 @@ struct Ray {
   /// The triangles on whose planes the ray begins and ends. A line meets a plane once, so they cannot stand
   /// in between, whatever a test that rounds may say of slivers; accelerators let the ray pass them.
   TriangleId leaves{}, reaches{};
+  /// When it travels: 0 as the shutter opens, 1 as it closes. Nothing to what stands still.
+  float time = middle_of_shutter;
 
   Vec3f at(float t) const { return origin + t * direction; }
 };

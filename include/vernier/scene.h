@@ -20,6 +20,17 @@ namespace vernier {
 
 using Triangle = std::array<uint32_t, 3>;
 
+// What moves while the shutter is open has `moments`: what it is like then, from the opening to the closing
+// of the shutter and evenly spaced; 2^n + 1 of them, at most most_moments, linear in between. None: it stands
+// still. What it is like beside, `to_world` or `positions`, is the middle of the shutter.
+constexpr size_t most_moments = 33;
+
+/// A mesh at one moment; the arrays are as long as those of its MeshDescription.
+struct MeshShape {
+  std::vector<Vec3f> positions, normals;
+  std::vector<Vec4f> tangents;
+};
+
 /// Triangles of one material. Attribute arrays are empty when absent, else as long as positions.
 struct MeshDescription {
   std::string name;
@@ -29,6 +40,7 @@ struct MeshDescription {
   std::vector<Vec4f> tangents;      ///< xyz unit, w = +-1 handedness: bitangent = w cross(n, t)
   std::array<std::vector<Vec2f>, 2> texcoords;
   std::vector<Vec4f> colors;  ///< linear RGBA, multiplies the base colour
+  std::vector<MeshShape> moments{};
 };
 
 /// A mesh placed in the world. Several may share a mesh.
@@ -40,6 +52,8 @@ struct InstanceDescription {
   /// Instances of one number are parts of one object, and may enclose a volume together; none: its own.
   std::optional<uint32_t> object{};
   std::string asset{};  ///< name of what it belongs to as a whole: of the node at the top of its tree
+  /// Must all mirror the mesh if `to_world` does, and none otherwise.
+  std::vector<Transform> moments{};
 };
 
 /// Looks along its local -z, +y up. A panorama sees all around as EnvironmentDescription pictures it, in
@@ -56,6 +70,8 @@ struct CameraDescription {
   float focus_distance =
       1;               ///< metres along the axis to the plane that the lens shows sharp; may be infinite
   Transform to_world;  ///< orthonormal
+  /// Orthonormal; turns at constant speed in between.
+  std::vector<Transform> moments{};
   /// Why no picture can be taken with it, as the text of an Error; empty: one can.
   std::string defect;
 };
@@ -70,6 +86,7 @@ struct PunctualLightDescription {
   float range = std::numeric_limits<float>::infinity();
   float inner_cone = 0, outer_cone = 0.785398163f;  ///< half angles
   Transform to_world;
+  std::vector<Transform> moments{};
 };
 
 /// Radiance from everywhere, as a latitude-longitude picture: u = atan2(z, x) / 2pi + 1/2, v = acos(y) / pi.
@@ -105,6 +122,11 @@ struct SceneDescription {
   std::vector<Notice> notices;
 };
 
+/// When the shutter opens and closes, in seconds after the time at which an animation poses the scene.
+struct Shutter {
+  double open = 0, close = 0;
+};
+
 /// How a file becomes a description.
 struct ImportOptions {
   bool strict = false;  ///< anything not honoured exactly is an error
@@ -114,6 +136,9 @@ struct ImportOptions {
   std::optional<double> time;
   /// Name, index, or "all" of them at once; empty: all when no two set the same thing, else the first.
   std::string animation;
+  /// What an animation moves meanwhile gets moments, as many as it takes to follow its course; what else it
+  /// changes is that of the middle. None: everything stands still.
+  std::optional<Shutter> shutter{};
   /// Files that the scene refers to may lie outside its folder; such a reference is an error otherwise.
   bool allow_outside_files = false;
 };

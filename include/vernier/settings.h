@@ -88,6 +88,9 @@ struct VERNIER_API RenderSettings {
   std::string integrator = "path";
   IntegratorOptions integrator_options;
   LightSplit light_split;
+  /// Part of the shutter for which each row of the picture is exposed: the first from its opening on, the
+  /// last until its closing, as in cameras that read their rows one after the other; 1: all rows throughout.
+  float row_exposure = 1;
   bool adaptive = true;  ///< spend samples where they lower the picture's error
   uint64_t seed = 0;
   RenderLimits limits;

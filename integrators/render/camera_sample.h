@@ -5,6 +5,7 @@
 #include "core/sampling/warp.h"
 #include "integrators/render/pixel_filter.h"
 #include "scene/camera.h"
+#include "scene/scene.h"
 #include "vernier/settings.h"
 
 namespace vernier {
@@ -24,25 +25,42 @@ struct CameraSampleId {
 /// The camera samples of a picture: a pure function, so that what a sample saw can be asked again later.
 class CameraSamples {
  public:
-  /// `camera` must live as long.
-  CameraSamples(const Camera& camera, const RenderSettings& settings)
-      : camera_(camera), filter_(settings.filter), width_(uint32_t(settings.width)), seed_(settings.seed) {}
+  /// `camera` must live as long; `scene` is what it looks at.
+  CameraSamples(const Camera& camera, const Scene& scene, const RenderSettings& settings)
+      : camera_(camera),
+        filter_(settings.filter),
+        width_(uint32_t(settings.width)),
+        seed_(settings.seed),
+        has_times_(camera.moves() || scene.moves()),
+        row_exposure_(settings.row_exposure),
+        rows_(float(settings.height)) {}
 
   /// The point of the lens comes after that of the pixel, so that a pinhole's samples are those without
-  /// lenses.
+  /// lenses, and the time after both, so that what stands still has those without shutters.
   CameraSample get(const CameraSampleId& id) const {
     Sampler sampler(uint32_t(id.y) * width_ + uint32_t(id.x), id.index, 2 * seed_ + uint64_t(id.half));
     const Vec2f raster = Vec2f(float(id.x), float(id.y)) + filter_.sample(sampler.next2());
+    if (has_times_) return timed(sampler, raster, id.y);
     if (!camera_.has_lens()) return {sampler, camera_.ray(raster)};
     const Vec2f on_lens = sample_disk(sampler.next2());
     return {sampler, camera_.ray(raster, on_lens)};
   }
 
  private:
+  CameraSample timed(Sampler sampler, const Vec2f& raster, int row) const {
+    std::optional<Vec2f> on_lens;
+    if (camera_.has_lens()) on_lens = sample_disk(sampler.next2());
+    const float opens = (1 - row_exposure_) * (float(row) + 0.5f) / rows_;
+    const float time = opens + row_exposure_ * sampler.next1();
+    return {sampler, camera_.ray(raster, on_lens, std::min(time, 1.f))};
+  }
+
   const Camera& camera_;
   const FilterSampler filter_;
   const uint32_t width_;
   const uint64_t seed_;
+  const bool has_times_;  ///< something moves while the shutter is open
+  const float row_exposure_, rows_;
 };
 
 }  // namespace vernier

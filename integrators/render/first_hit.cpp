@@ -9,7 +9,11 @@ constexpr uint32_t samples_looked_at = 8;  // of each half
 
 FirstHits::FirstHits(const Scene& scene, const Camera& camera, const RenderSettings& options,
                      const Film& film)
-    : scene_(scene), camera_(camera), options_(options), film_(film), camera_samples_(camera, options) {}
+    : scene_(scene),
+      camera_(camera),
+      options_(options),
+      film_(film),
+      camera_samples_(camera, scene, options) {}
 
 FirstHits::Met FirstHits::sample(int x, int y, int half, uint32_t i) const {
   const auto [sampler, ray] = camera_samples_.get({options_.crop.x + x, options_.crop.y + y, half, i});

@@ -35,7 +35,7 @@ class Renderer {
  public:
   Renderer(const RenderJob& job, RenderState& state, const std::atomic<bool>& stop, RenderHooks hooks)
       : scene_(job.scene),
-        camera_samples_(job.camera, job.settings),
+        camera_samples_(job.camera, job.scene, job.settings),
         integrator_(job.integrator),
         options_(job.settings),
         backdrop_(job.backdrop),

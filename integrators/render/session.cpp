@@ -16,6 +16,7 @@
 #include "integrators/render/picture.h"
 #include "integrators/render/pixel_filter.h"
 #include "scene/camera.h"
+#include "scene/moving_mesh.h"
 #include "scene/scene.h"
 
 namespace vernier {
@@ -37,6 +38,10 @@ void check(const Scene* scene, const RenderSettings& settings) {
   if (!camera.defect.empty()) refuse(camera.defect);
   if (!(length(camera.to_world.z) > 0 && length(cross(camera.to_world.y, camera.to_world.z)) > 0))
     refuse("the camera has no direction; its to_world is singular");
+  check_moment_count(camera.moments.size(), "the camera");
+  if (!(settings.row_exposure >= 0 && settings.row_exposure <= 1))
+    refuse(fmt::format("rows that are exposed for {} of the shutter; expected a part, 0 to 1",
+                       settings.row_exposure));
   if (!(camera.lens_radius >= 0 && std::isfinite(camera.lens_radius)))
     refuse(fmt::format("a lens of radius {} m; expected 0, for a pinhole, or more", camera.lens_radius));
   if (camera.lens_radius > 0 && camera.kind != CameraDescription::Kind::perspective)

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int format_version = 1;
+constexpr int format_version = 2;
 
 constexpr std::array<std::pair<std::string_view, LightSampling>, 3> light_samplings{
     {{"mis", LightSampling::mis}, {"light", LightSampling::light}, {"bsdf", LightSampling::bsdf}}};
@@ -52,6 +52,7 @@ void for_each_setting(Settings& s, const Visit& visit) {
   visit("ambient", options.ambient);
   visit("cutoff", options.cutoff);
   visit("light-split", s.light_split);
+  visit("row-exposure", s.row_exposure);
   visit("adaptive", s.adaptive);
   visit("seed", s.seed);
 }
@@ -69,17 +70,20 @@ Json encode(const PixelFilter& filter) { return filter_text(filter); }
 Json encode(const Crop& crop) {
   return crop.width > 0 ? Json{crop.x, crop.y, crop.width, crop.height} : Json(nullptr);
 }
+Json encode(const Transform& t) { return {encode(t.x), encode(t.y), encode(t.z), encode(t.origin)}; }
 Json encode(const CameraDescription& camera) {
-  const Transform& t = camera.to_world;
-  return {{"name", camera.name},
-          {"kind", name_of(camera_kinds, camera.kind)},
-          {"yfov", camera.yfov},
-          {"aspect", camera.aspect},
-          {"xmag", camera.xmag},
-          {"ymag", camera.ymag},
-          {"lens_radius", camera.lens_radius},
-          {"focus_distance", std::isinf(camera.focus_distance) ? Json(nullptr) : Json(camera.focus_distance)},
-          {"to_world", {encode(t.x), encode(t.y), encode(t.z), encode(t.origin)}}};
+  Json json = {
+      {"name", camera.name},
+      {"kind", name_of(camera_kinds, camera.kind)},
+      {"yfov", camera.yfov},
+      {"aspect", camera.aspect},
+      {"xmag", camera.xmag},
+      {"ymag", camera.ymag},
+      {"lens_radius", camera.lens_radius},
+      {"focus_distance", std::isinf(camera.focus_distance) ? Json(nullptr) : Json(camera.focus_distance)},
+      {"to_world", encode(camera.to_world)}};
+  for (const Transform& moment : camera.moments) json["moments"].push_back(encode(moment));
+  return json;
 }
 Json encode(const Background& background) {
   return {{"kind", name_of(background_kinds, background.kind)},
@@ -118,6 +122,10 @@ void decode(const Json& json, Crop& crop) {
   if (json.is_null()) return;
   crop = {json.at(0).get<int>(), json.at(1).get<int>(), json.at(2).get<int>(), json.at(3).get<int>()};
 }
+void decode(const Json& json, Transform& t) {
+  size_t i = 0;
+  for (Vec3f* column : {&t.x, &t.y, &t.z, &t.origin}) decode(json.at(i++), *column);
+}
 void decode(const Json& json, CameraDescription& camera) {
   camera = {};
   camera.name = json.at("name").get<std::string>();
@@ -129,10 +137,9 @@ void decode(const Json& json, CameraDescription& camera) {
   camera.lens_radius = json.at("lens_radius").get<float>();
   const Json& focus = json.at("focus_distance");
   camera.focus_distance = focus.is_null() ? std::numeric_limits<float>::infinity() : focus.get<float>();
-  const Json& columns = json.at("to_world");
-  Transform& t = camera.to_world;
-  size_t i = 0;
-  for (Vec3f* column : {&t.x, &t.y, &t.z, &t.origin}) decode(columns.at(i++), *column);
+  decode(json.at("to_world"), camera.to_world);
+  if (!json.contains("moments")) return;
+  for (const Json& moment : json.at("moments")) decode(moment, camera.moments.emplace_back());
 }
 void decode(const Json& json, Background& background) {
   decode_name(json.at("kind"), "background", background_kinds, background.kind);

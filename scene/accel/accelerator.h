@@ -41,6 +41,12 @@ class HitFilter {
 struct GeometryMesh {
   std::span<const Vec3f> positions;
   std::span<const Triangle> triangles;
+  /// Of a mesh that moves, which must be in world space: its positions at two moments of the shutter or more,
+  /// evenly spaced, of which the padding counts as well; between() tells the others (core/math/moments.h).
+  /// Then `positions` are nothing to the accelerator.
+  std::vector<std::span<const Vec3f>> moments{};
+
+  bool moves() const { return !moments.empty(); }
 };
 
 struct GeometryInstance {

@@ -14,11 +14,12 @@ TriangleTree::TriangleTree(TriangleSet triangles) : triangles_(std::move(triangl
     std::array<uint32_t, TriangleBlock::lanes> ids;
     for (uint32_t k = 0; k < leaves[i].count; ++k) ids[k] = items[leaves[i].first + k].id;
     blocks_[i] = triangles_.block(std::span(ids).first(leaves[i].count));
+    triangles_.load(blocks_[i]);
   });
 }
 
 void TriangleTree::refit() {
-  parallel_for(blocks_.size(), [&](size_t i) { triangles_.reload(blocks_[i]); });
+  parallel_for(blocks_.size(), [&](size_t i) { triangles_.load(blocks_[i]); });
   tree_.refit([&](uint32_t leaf) { return bounds_of(blocks_[leaf]); });
 }
 

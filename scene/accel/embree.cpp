@@ -143,7 +143,7 @@ RTCRayHit embree_ray(const Ray& ray, bool robust) {
   rayhit.ray.dir_x = ray.direction.x;
   rayhit.ray.dir_y = ray.direction.y;
   rayhit.ray.dir_z = ray.direction.z;
-  rayhit.ray.time = 0;
+  rayhit.ray.time = ray.time;
   rayhit.ray.tfar = below(ray.t_max);
   rayhit.ray.mask = ~0u;
   rayhit.ray.id = 0;
@@ -284,8 +284,16 @@ void EmbreeAccelerator::attach_mesh(RTCScene scene, const GeometryMesh& mesh, ui
   if (auto hittable = without_unhittable(mesh); !hittable.empty())
     triangles = hittable_.emplace_back(std::move(hittable));
   RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0,
-                             sizeof(Vec3f), mesh.positions.size());
+  const auto set_vertices = [&](unsigned moment, std::span<const Vec3f> positions) {
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, moment, RTC_FORMAT_FLOAT3, positions.data(),
+                               0, sizeof(Vec3f), positions.size());
+  };
+  if (mesh.moves()) {
+    rtcSetGeometryTimeStepCount(geometry, unsigned(mesh.moments.size()));
+    for (unsigned i = 0; i < mesh.moments.size(); ++i) set_vertices(i, mesh.moments[i]);
+  } else {
+    set_vertices(0, mesh.positions);
+  }
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
                              sizeof(Triangle), triangles.size());
   if (filtered) {

@@ -149,9 +149,11 @@ uint32_t TriangleOctree::add(const Draft& draft) {
   if (draft.is_leaf) {
     const auto first = static_cast<uint32_t>(blocks_.size());
     const std::span<const uint32_t> triangles(draft.triangles);
-    for (size_t i = 0; i < triangles.size(); i += TriangleBlock::lanes)
+    for (size_t i = 0; i < triangles.size(); i += TriangleBlock::lanes) {
       blocks_.push_back(triangles_.block(
           triangles.subspan(i, std::min<size_t>(TriangleBlock::lanes, triangles.size() - i))));
+      triangles_.load(blocks_.back());
+    }
     leaves_.push_back({first, static_cast<uint32_t>(blocks_.size()) - first});
     return leaf_flag | static_cast<uint32_t>(leaves_.size() - 1);
   }

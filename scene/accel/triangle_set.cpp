@@ -6,10 +6,20 @@
 #include <limits>
 
 #include "core/base/parallel.h"
+#include "core/math/moments.h"
 #include "scene/accel/triangle.h"
 #include "vernier/error.h"
 
 namespace vernier {
+namespace {
+
+Vec3f middle_position(const GeometryMesh& mesh, uint32_t vertex) {
+  if (!mesh.moves()) return mesh.positions[vertex];
+  const auto [first, part] = moments_around(middle_of_shutter, mesh.moments.size());
+  return between(mesh.moments[first][vertex], mesh.moments[first + 1][vertex], part);
+}
+
+}  // namespace
 
 void TriangleSet::add(const GeometryMesh& mesh, uint32_t instance) {
   if (mesh.triangles.size() > std::numeric_limits<uint32_t>::max() - size_)
@@ -36,12 +46,11 @@ std::vector<BuildItem> TriangleSet::items() const {
         tbb::blocked_range<uint32_t>(0, static_cast<uint32_t>(part.mesh.triangles.size()), 1 << 14),
         [&](const tbb::blocked_range<uint32_t>& range) {
           for (uint32_t i = range.begin(); i < range.end(); ++i) {
-            const auto& [a, b, c] = part.mesh.triangles[i];
-            const auto& p = part.mesh.positions;
             BuildItem& item = items[part.first + i];
             item.id = part.first + i;
-            if (!is_hittable(p[a], p[b], p[c])) continue;
-            for (const uint32_t vertex : {a, b, c}) item.box.add(p[vertex]);
+            if (!is_hittable(part.mesh, part.mesh.triangles[i])) continue;
+            for (const uint32_t vertex : part.mesh.triangles[i])
+              item.box.add(middle_position(part.mesh, vertex));
           }
         });
   }
@@ -57,25 +66,44 @@ TriangleBlock TriangleSet::block(std::span<const uint32_t> triangles) const {
     block.instance[lane] = part.instance;
     block.primitive[lane] = triangle - part.first;
   }
-  reload(block);
   return block;
 }
 
-void TriangleSet::reload(TriangleBlock& block) const {
+template <typename PositionsOf>
+void TriangleSet::load_from(const PositionsOf& positions_of, TriangleBlock& block) const {
   const auto instance_is_less = [](const Part& part, uint32_t instance) { return part.instance < instance; };
   for (unsigned lane = 0; lane < TriangleBlock::lanes; ++lane) {
     const Part& part =
         *std::lower_bound(parts_.begin(), parts_.end(), block.instance[lane], instance_is_less);
     const Triangle& indices = part.mesh.triangles[block.primitive[lane]];
+    const std::span<const Vec3f> positions = positions_of(part.mesh);
     for (int vertex = 0; vertex < 3; ++vertex)
       for (int axis = 0; axis < 3; ++axis)
-        block.vertex[vertex][axis][lane] = part.mesh.positions[indices[vertex]][axis];
+        block.vertex[vertex][axis][lane] = positions[indices[vertex]][axis];
   }
 }
 
+void TriangleSet::load(TriangleBlock& block) const {
+  load_from([](const GeometryMesh& mesh) { return mesh.positions; }, block);
+}
+
+void TriangleSet::load(TriangleBlock& block, size_t moment) const {
+  load_from([&](const GeometryMesh& mesh) { return mesh.moments[moment]; }, block);
+}
+
+bool is_hittable(const GeometryMesh& mesh, const Triangle& triangle) {
+  const auto& [a, b, c] = triangle;
+  if (!mesh.moves()) return is_hittable(mesh.positions[a], mesh.positions[b], mesh.positions[c]);
+  bool has_area = false;
+  for (const auto& p : mesh.moments) {
+    if (!is_finite(p[a]) || !is_finite(p[b]) || !is_finite(p[c])) return false;
+    has_area = has_area || is_hittable(p[a], p[b], p[c]);
+  }
+  return has_area;
+}
+
 std::vector<Triangle> without_unhittable(const GeometryMesh& mesh) {
-  const auto& p = mesh.positions;
-  const auto is_out = [&](const Triangle& t) { return !is_hittable(p[t[0]], p[t[1]], p[t[2]]); };
+  const auto is_out = [&](const Triangle& t) { return !is_hittable(mesh, t); };
   std::atomic<bool> any = false;
   constexpr size_t triangles_a_task = 1 << 14;
   parallel_for((mesh.triangles.size() + triangles_a_task - 1) / triangles_a_task, [&](size_t task) {

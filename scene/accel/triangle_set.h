@@ -21,14 +21,16 @@ class TriangleSet {
 
   std::array<Vec3f, 3> corners(uint32_t triangle) const;
 
-  /// Bounds and number of each triangle that can be hit at all, in order.
+  /// Bounds, in the middle of the shutter, and number of each triangle that can be hit at all, in order.
   std::vector<BuildItem> items() const;
 
-  /// The block of one to four triangles, by number.
+  /// The block of one to four triangles, by number; its vertices are to be loaded.
   TriangleBlock block(std::span<const uint32_t> triangles) const;
 
-  /// Reads the vertices of a block again.
-  void reload(TriangleBlock& block) const;
+  /// Reads the vertices of a block.
+  void load(TriangleBlock& block) const;
+  /// The same of meshes that move, at one of their moments.
+  void load(TriangleBlock& block, size_t moment) const;
 
  private:
   struct Part {
@@ -36,10 +38,15 @@ class TriangleSet {
     uint32_t instance, first;
   };
   const Part& part_of(uint32_t triangle) const;
+  template <typename PositionsOf>
+  void load_from(const PositionsOf& positions_of, TriangleBlock& block) const;
 
   std::vector<Part> parts_;
   uint32_t size_ = 0;
 };
+
+/// Whether rays can hit a triangle of a mesh at all; of one that moves, at some time.
+bool is_hittable(const GeometryMesh& mesh, const Triangle& triangle);
 
 /// The triangles of a mesh, those that cannot be hit replaced by indices beyond all vertices; empty when
 /// there are none such.

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <chrono>
+#include <map>
 #include <optional>
 #include <tuple>
 #include <unordered_map>
 
 #include "scene/accel/accelerator.h"
 #include "scene/accel/instance.h"
+#include "scene/accel/moving_tree.h"
 #include "scene/accel/query.h"
 #include "scene/accel/triangle_set.h"
 #include "scene/accel/wide_tree.h"
@@ -15,14 +17,16 @@
 namespace vernier {
 
 /// What `bvh`, `octree` and `brute_force` share: a Structure over all triangles in world space, one for each
-/// mesh that is placed by a transform, and a tree over those instances. Of hits at the same t, the first by
+/// mesh that is placed by a transform, a tree over those instances, and one Moving for what moves, for each
+/// number of moments. Of hits at the same t, the first by
 /// instance and primitive wins, so all Structures give the same answers to the bit.
 ///
 /// Structure: Structure(TriangleSet), bounds(), bytes(), and
 ///   bool traverse<ordered>(const Ray&, QueryCost*, Blocks&&)
 /// which shows every TriangleBlock that may hold a hit in (t_min, blocks.t_max()] to blocks.visit() until
-/// that returns true, near ones first if ordered. Test: WatertightTest or MoellerTrumboreTest.
-template <typename Structure, typename Test>
+/// that returns true, near ones first if ordered. Test: WatertightTest or MoellerTrumboreTest. Moving: as
+/// MovingTree.
+template <typename Structure, typename Test, typename Moving = MovingTree>
 class TwoLevel : public Accelerator {
  public:
   explicit TwoLevel(const Geometry& geometry);
@@ -77,8 +81,8 @@ class TwoLevel : public Accelerator {
   bool search(Ray ray, QueryCost* cost, Hits& hits) const;
 
   /// In one structure; `local` is the ray in its space, `placed` null in world space.
-  template <bool ordered, typename Hits>
-  bool search(const Structure& structure, const Placed* placed, const Ray& local, const Ray& world,
+  template <bool ordered, typename Triangles, typename Hits>
+  bool search(const Triangles& structure, const Placed* placed, const Ray& local, const Ray& world,
               QueryCost* cost, Hits& hits) const;
 
   void build();
@@ -91,6 +95,7 @@ class TwoLevel : public Accelerator {
   std::vector<uint32_t> baked_instance_;
   Structure world_;
   std::vector<Structure> meshes_;
+  std::vector<Moving> moving_;
   std::vector<Placed> placed_;  ///< by leaf of tree_
   WideTree tree_;
   // A ray carried into a mesh's space is rounded there. Seen from the world that moves it by at most
@@ -100,8 +105,8 @@ class TwoLevel : public Accelerator {
   AcceleratorStats stats_;
 };
 
-template <typename Structure, typename Test>
-bool TwoLevel<Structure, Test>::Nearest::offer(const RawHit& h) {
+template <typename Structure, typename Test, typename Moving>
+bool TwoLevel<Structure, Test, Moving>::Nearest::offer(const RawHit& h) {
   const auto order = [](const RawHit& x) { return std::tuple(x.t, x.instance, x.primitive); };
   if (!hit || order(h) < order(*hit)) {
     hit = h;
@@ -110,31 +115,31 @@ bool TwoLevel<Structure, Test>::Nearest::offer(const RawHit& h) {
   return false;
 }
 
-template <typename Structure, typename Test>
-std::optional<RawHit> TwoLevel<Structure, Test>::nearest(const Ray& ray, QueryCost* cost) const {
+template <typename Structure, typename Test, typename Moving>
+std::optional<RawHit> TwoLevel<Structure, Test, Moving>::nearest(const Ray& ray, QueryCost* cost) const {
   if (!is_traceable(ray)) return {};
   Nearest hits{below(ray.t_max), {}};
   search<true>(ray, cost, hits);
   return hits.hit;
 }
 
-template <typename Structure, typename Test>
-bool TwoLevel<Structure, Test>::occluded(const Ray& ray) const {
+template <typename Structure, typename Test, typename Moving>
+bool TwoLevel<Structure, Test, Moving>::occluded(const Ray& ray) const {
   if (!is_traceable(ray)) return false;
   Any hits{below(ray.t_max)};
   return search<false>(ray, nullptr, hits);
 }
 
-template <typename Structure, typename Test>
-bool TwoLevel<Structure, Test>::occluded(const Ray& ray, std::vector<RawHit>& passed) const {
+template <typename Structure, typename Test, typename Moving>
+bool TwoLevel<Structure, Test, Moving>::occluded(const Ray& ray, std::vector<RawHit>& passed) const {
   if (!has_clear_) return occluded(ray);
   if (!is_traceable(ray)) return false;
   AnyNotClear hits{below(ray.t_max), geometry_.instances, passed};
   return search<false>(ray, nullptr, hits);
 }
 
-template <typename Structure, typename Test>
-void TwoLevel<Structure, Test>::all_hits(const Ray& ray, std::vector<RawHit>& sorted) const {
+template <typename Structure, typename Test, typename Moving>
+void TwoLevel<Structure, Test, Moving>::all_hits(const Ray& ray, std::vector<RawHit>& sorted) const {
   sorted.clear();
   if (!is_traceable(ray)) return;
   All hits{below(ray.t_max), sorted};
@@ -142,18 +147,20 @@ void TwoLevel<Structure, Test>::all_hits(const Ray& ray, std::vector<RawHit>& so
   sort_hits(sorted);
 }
 
-template <typename Structure, typename Test>
-std::optional<QueryCost> TwoLevel<Structure, Test>::closest_cost(const Ray& ray) const {
+template <typename Structure, typename Test, typename Moving>
+std::optional<QueryCost> TwoLevel<Structure, Test, Moving>::closest_cost(const Ray& ray) const {
   QueryCost cost;
   nearest(ray, &cost);
   return cost;
 }
 
-template <typename Structure, typename Test>
+template <typename Structure, typename Test, typename Moving>
 template <bool ordered, typename Hits>
-bool TwoLevel<Structure, Test>::search(Ray ray, QueryCost* cost, Hits& hits) const {
+bool TwoLevel<Structure, Test, Moving>::search(Ray ray, QueryCost* cost, Hits& hits) const {
   ray.t_min = std::max(ray.t_min, 0.f);
   if (search<ordered>(world_, nullptr, ray, ray, cost, hits)) return true;
+  for (const Moving& moving : moving_)
+    if (search<ordered>(moving, nullptr, ray, ray, cost, hits)) return true;
   if (tree_.empty()) return false;
 
   struct Instances {
@@ -177,10 +184,11 @@ bool TwoLevel<Structure, Test>::search(Ray ray, QueryCost* cost, Hits& hits) con
   return tree_.traverse<ordered>(slab_ray, ray.t_min, cost, Instances{*this, ray, cost, hits});
 }
 
-template <typename Structure, typename Test>
-template <bool ordered, typename Hits>
-bool TwoLevel<Structure, Test>::search(const Structure& structure, const Placed* placed, const Ray& local,
-                                       const Ray& world, QueryCost* cost, Hits& hits) const {
+template <typename Structure, typename Test, typename Moving>
+template <bool ordered, typename Triangles, typename Hits>
+bool TwoLevel<Structure, Test, Moving>::search(const Triangles& structure, const Placed* placed,
+                                               const Ray& local, const Ray& world, QueryCost* cost,
+                                               Hits& hits) const {
   struct Blocks {
     const Geometry& geometry;
     const Placed* placed;
@@ -210,26 +218,30 @@ bool TwoLevel<Structure, Test>::search(const Structure& structure, const Placed*
   return structure.template traverse<ordered>(local, cost, Blocks{geometry_, placed, world, ray, cost, hits});
 }
 
-template <typename Structure, typename Test>
-TwoLevel<Structure, Test>::TwoLevel(const Geometry& geometry)
+template <typename Structure, typename Test, typename Moving>
+TwoLevel<Structure, Test, Moving>::TwoLevel(const Geometry& geometry)
     : geometry_(geometry), has_clear_(has_clear_instances(geometry)) {
   const auto start = std::chrono::steady_clock::now();
   build();
   stats_.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   stats_.bytes = world_.bytes() + tree_.bytes() + placed_.capacity() * sizeof(Placed);
   for (const Structure& mesh : meshes_) stats_.bytes += mesh.bytes();
+  for (const Moving& moving : moving_) stats_.bytes += moving.bytes();
   for (const auto& positions : baked_) stats_.bytes += positions.size() * sizeof(Vec3f);
 }
 
-template <typename Structure, typename Test>
-void TwoLevel<Structure, Test>::build() {
+template <typename Structure, typename Test, typename Moving>
+void TwoLevel<Structure, Test, Moving>::build() {
   TriangleSet in_world;
+  std::map<size_t, TriangleSet> moving;                 // by number of moments
   std::unordered_map<uint32_t, uint32_t> structure_of;  // mesh to index into meshes_
   std::vector<Placed> placed;
   for (uint32_t id = 0; id < geometry_.instances.size(); ++id) {
     const GeometryInstance& instance = geometry_.instances[id];
     const GeometryMesh& mesh = geometry_.meshes[instance.mesh];
-    if (instance.to_world.is_identity()) {
+    if (mesh.moves()) {
+      moving[mesh.moments.size()].add(mesh, id);
+    } else if (instance.to_world.is_identity()) {
       in_world.add(mesh, id);
     } else if (const auto to_mesh = WorldToMesh::of(instance.to_world)) {
       const auto [entry, is_new] =
@@ -247,6 +259,8 @@ void TwoLevel<Structure, Test>::build() {
     }
   }
   world_ = Structure(std::move(in_world));
+  for (auto& [moments, triangles] : moving)
+    moving_.emplace_back(MovingTriangles{moments, std::move(triangles)});
   std::vector<BuildItem> items;
   for (uint32_t i = 0; i < placed.size(); ++i)
     if (const Bounds box = world_box(placed[i]); !box.empty()) items.push_back({box, i});
@@ -255,13 +269,13 @@ void TwoLevel<Structure, Test>::build() {
   bound_carrying_error();
 }
 
-template <typename Structure, typename Test>
-Bounds TwoLevel<Structure, Test>::world_box(const Placed& placed) const {
+template <typename Structure, typename Test, typename Moving>
+Bounds TwoLevel<Structure, Test, Moving>::world_box(const Placed& placed) const {
   return transformed_box(meshes_[placed.mesh].bounds(), geometry_.instances[placed.instance].to_world);
 }
 
-template <typename Structure, typename Test>
-void TwoLevel<Structure, Test>::bound_carrying_error() {
+template <typename Structure, typename Test, typename Moving>
+void TwoLevel<Structure, Test, Moving>::bound_carrying_error() {
   reach_ = tree_.bounds();
   for (const Placed& placed : placed_) {
     const Transform& to_world = geometry_.instances[placed.instance].to_world;
@@ -270,8 +284,8 @@ void TwoLevel<Structure, Test>::bound_carrying_error() {
   }
 }
 
-template <typename Structure, typename Test>
-void TwoLevel<Structure, Test>::refit() {
+template <typename Structure, typename Test, typename Moving>
+void TwoLevel<Structure, Test, Moving>::refit() {
   for (size_t i = 0; i < baked_.size(); ++i) {
     const GeometryInstance& instance = geometry_.instances[baked_instance_[i]];
     const auto positions = bake_positions(geometry_.meshes[instance.mesh], instance.to_world);
@@ -280,6 +294,7 @@ void TwoLevel<Structure, Test>::refit() {
   }
   world_.refit();
   for (Structure& mesh : meshes_) mesh.refit();
+  for (Moving& moving : moving_) moving.refit();
   tree_.refit([&](uint32_t leaf) { return world_box(placed_[leaf]); });
   bound_carrying_error();
 }

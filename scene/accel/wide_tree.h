@@ -83,7 +83,17 @@ class WideTree {
   /// one says stop. Leaves: float t_max() const; bool visit(uint32_t leaf), true to stop; void
   /// prefetch(uint32_t leaf) const.
   template <bool ordered, typename Leaves>
-  bool traverse(const SlabRay& ray, float t_min, QueryCost* cost, Leaves&& leaves) const;
+  bool traverse(const SlabRay& ray, float t_min, QueryCost* cost, Leaves&& leaves) const {
+    const auto own = [this](uint32_t node) -> const Planes& { return nodes_[node].planes; };
+    return traverse<ordered>(ray, t_min, cost, leaves, own);
+  }
+  /// The same with other boxes: planes_of(node) are the planes of a node's.
+  template <bool ordered, typename Leaves, typename PlanesOf>
+  bool traverse(const SlabRay& ray, float t_min, QueryCost* cost, Leaves& leaves,
+                const PlanesOf& planes_of) const;
+
+  /// By node, as the boxes are now.
+  std::span<const WideNode> nodes() const { return nodes_; }
 
  private:
   static constexpr unsigned max_depth = 96;  ///< of the binary splits, kept by the builder
@@ -134,8 +144,9 @@ inline void prefetch_lines(const void* memory, size_t bytes) {
     __builtin_prefetch(static_cast<const char*>(memory) + offset);
 }
 
-template <bool ordered, typename Leaves>
-bool WideTree::traverse(const SlabRay& ray, float t_min, QueryCost* cost, Leaves&& leaves) const {
+template <bool ordered, typename Leaves, typename PlanesOf>
+bool WideTree::traverse(const SlabRay& ray, float t_min, QueryCost* cost, Leaves& leaves,
+                        const PlanesOf& planes_of) const {
   struct Entry {
     uint32_t node;
     float enters;
@@ -148,7 +159,7 @@ bool WideTree::traverse(const SlabRay& ray, float t_min, QueryCost* cost, Leaves
     const WideNode& node = nodes_[next.node];
     if (cost) ++cost->nodes;
     Float8 enters;
-    const unsigned met = ray.meets(node.planes, t_min, leaves.t_max(), enters);
+    const unsigned met = ray.meets(planes_of(next.node), t_min, leaves.t_max(), enters);
     const unsigned met_leaves = met & node.leaf, met_nodes = met & ~unsigned{node.leaf};
     for (unsigned slots = met_leaves; slots; slots &= slots - 1) leaves.prefetch(node.child[lowest(slots)]);
     for (unsigned slots = met_nodes; slots; slots &= slots - 1)

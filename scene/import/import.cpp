@@ -15,6 +15,7 @@
 #include "scene/import/instances.h"
 #include "scene/import/materials.h"
 #include "scene/import/meshes.h"
+#include "scene/import/moments.h"
 #include "scene/import/nodes.h"
 #include "scene/import/textures.h"
 #include "scene/import/thin_bodies.h"
@@ -92,10 +93,13 @@ void leave_out_far(std::vector<std::string> names, SceneDescription& scene) {
   std::vector<Vec3f> reach(scene.meshes.size(), Vec3f(0, 0, 0));
   parallel_for(reach.size(), [&](size_t i) {
     for (const Vec3f& p : scene.meshes[i].positions) reach[i] = max(reach[i], abs(p));
+    for (const MeshShape& shape : scene.meshes[i].moments)
+      for (const Vec3f& p : shape.positions) reach[i] = max(reach[i], abs(p));
   });
   const auto is_far = [&](const InstanceDescription& instance) {
     const Vec3f& own = reach[instance.mesh];
-    const Vec3f placed = instance.to_world.absolute_point(own, 1);
+    Vec3f placed = instance.to_world.absolute_point(own, 1);
+    for (const Transform& moment : instance.moments) placed = max(placed, moment.absolute_point(own, 1));
     return !(max_component(own) <= farthest && max_component(placed) <= farthest);
   };
   for (const auto& instance : scene.instances)
@@ -177,6 +181,9 @@ SceneDescription SceneFile::Content::describe(const ImportOptions& options, bool
   if (!options.variant.empty()) scene.choices.emplace_back("variant", options.variant);
   if (!options.animation.empty()) scene.choices.emplace_back("animation", options.animation);
   if (options.time) scene.choices.emplace_back("at", fmt::format("{}", *options.time));
+  if (options.shutter)
+    scene.choices.emplace_back("shutter",
+                               fmt::format("{},{}", options.shutter->open, options.shutter->close));
 
   note_bent_light(scene);
   if (options.strict) check_strictly(document_, scene);
@@ -186,8 +193,9 @@ SceneDescription SceneFile::Content::describe(const ImportOptions& options, bool
 void SceneFile::Content::add_shapes(const ImportOptions& options, bool keep, SceneDescription& scene) {
   std::vector<NodePose> poses = rest_pose(document_, scene.notices);
   std::vector<PropertyValue> values;
-  if (options.time || !options.animation.empty())
-    pose_by_animations(document_, options.animation, options.time.value_or(0), poses, values, scene.notices);
+  const bool is_posed = options.time || !options.animation.empty();
+  if (is_posed)
+    pose_by_animations(document_, options.animation, posed_time(options), poses, values, scene.notices);
   set_properties(values);
   const NodePlaces places = place_nodes(document_, poses);
   add_cameras_and_lights(document_, places, scene);
@@ -206,6 +214,8 @@ void SceneFile::Content::add_shapes(const ImportOptions& options, bool keep, Sce
   scene.meshes =
       read_meshes(document_, placement.meshes, places.to_world, repairs, keep ? &meshes_ : nullptr);
   append(repairs.notices(), scene.notices);
+  if (is_posed && options.shutter)
+    add_moments({document_, materials_.materials, options, poses, values, places, placement.meshes, scene});
   leave_out_far(std::move(placement.too_far), scene);
   add_thin_bodies(document_, placement.meshes, scene);
 

@@ -42,19 +42,13 @@ Interval in_cone(const Vec3d& origin, const Vec3d& direction, const Vec3d& axis,
 
 }  // namespace
 
-void Lamps::add(const PunctualLightDescription& lamp, float power, uint32_t light, uint32_t source) {
-  const bool is_spot = lamp.kind == PunctualLightDescription::Kind::spot;
-  lamps_.push_back({Vec3d(lamp.to_world.origin), Vec3d(normalize(-lamp.to_world.z)),
-                    is_spot ? std::cos(double(lamp.outer_cone)) : -1, double(lamp.range), power, light,
-                    source});
-}
-
 LampsAlongRay::LampsAlongRay(const Lamps& lamps, const Ray& ray, float begin, float end)
     : lamps_(lamps.lamps_),
       origin_(ray.origin),
       direction_(ray.direction),
       begin_(double(begin)),
-      end_(double(end)) {
+      end_(double(end)),
+      time_(ray.time) {
   if (lamps_.size() > most_weighed) return;
   for (size_t i = 0; i < lamps_.size(); ++i) {
     views_[i] = view(lamps_[i]);
@@ -65,19 +59,21 @@ LampsAlongRay::LampsAlongRay(const Lamps& lamps, const Ray& ray, float begin, fl
 }
 
 LampsAlongRay::View LampsAlongRay::view(const Lamps::Lamp& lamp) const {
-  const Vec3d from = origin_ - lamp.position;
+  const PunctualLight::Place place = lamp.lamp->place_at(time_);
+  const Vec3d from = origin_ - Vec3d(place.position);
+  const double range = double(lamp.lamp->range()), cosine = double(lamp.lamp->cos_outer());
   View view;
   view.nearest = -dot(from, direction_);
   const double distance2 = length_squared(from + view.nearest * direction_);
   // A lamp on the ray itself would see it from no angle; a millionth of the way aside it sees as much.
   view.distance = std::max(std::sqrt(distance2), 1e-6 * (1 + std::abs(view.nearest)));
   Interval lit{begin_, end_};
-  if (std::isfinite(lamp.range)) {
-    const double half = std::sqrt(std::max(0., square(lamp.range) - distance2));
+  if (std::isfinite(range)) {
+    const double half = std::sqrt(std::max(0., square(range) - distance2));
     lit = {std::max(lit.first, view.nearest - half), std::min(lit.second, view.nearest + half)};
   }
-  if (lamp.cos_outer > 0 && lit.first < lit.second)
-    lit = in_cone(from, direction_, lamp.axis, lamp.cos_outer, lit);
+  if (cosine > 0 && lit.first < lit.second)
+    lit = in_cone(from, direction_, Vec3d(place.direction), cosine, lit);
   if (!(lit.first < lit.second)) return view;
   view.first = std::atan((lit.first - view.nearest) / view.distance);
   view.last = std::atan((lit.second - view.nearest) / view.distance);
@@ -110,12 +106,12 @@ std::optional<LampsAlongRay::Sample> LampsAlongRay::sample(float u, float v) con
   const double t = std::clamp(seen.nearest + seen.distance * std::tan(angle), begin_, end_);
   const double pdf = density(seen, t) * double(prob(picked));
   if (!(pdf > 0) || !std::isfinite(t)) return std::nullopt;
-  return Sample{lamps_[picked].light, lamps_[picked].source, float(t), float(pdf)};
+  return Sample{lamps_[picked].light, float(t), float(pdf)};
 }
 
-float LampsAlongRay::pdf(uint32_t source, float t) const {
+float LampsAlongRay::pdf(const Light* light, float t) const {
   const auto lamp = std::find_if(lamps_.begin(), lamps_.end(),
-                                 [&](const Lamps::Lamp& candidate) { return candidate.source == source; });
+                                 [&](const Lamps::Lamp& candidate) { return candidate.lamp == light; });
   if (lamp == lamps_.end()) return 0;
   const auto i = size_t(lamp - lamps_.begin());
   const View seen = lamps_.size() > most_weighed ? view(*lamp) : views_[i];

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/math/ray.h"
-#include "vernier/scene.h"
+#include "scene/lights/punctual.h"
 
 // Where a medium scatters the light of lamps that are points: near them by the inverse square of the
 // distance, without bound, which no other choice of a place to scatter makes up for.
@@ -16,8 +16,8 @@ namespace vernier {
 /// The lamps of a scene that have a place: point lamps and spots.
 class Lamps {
  public:
-  /// `light` is its index in the LightSet, `source` among the punctual lights of the description.
-  void add(const PunctualLightDescription& lamp, float power, uint32_t light, uint32_t source);
+  /// The light of that index in the LightSet, which must live as long, at a place.
+  void add(const PunctualLight& lamp, uint32_t light) { lamps_.push_back({&lamp, lamp.power({}), light}); }
 
   bool empty() const { return lamps_.empty(); }
 
@@ -25,11 +25,9 @@ class Lamps {
   friend class LampsAlongRay;
 
   struct Lamp {
-    Vec3d position, axis;
-    double cos_outer;  ///< -1: shines to all sides
-    double range;      ///< metres; may be infinite
+    const PunctualLight* lamp;
     float power;
-    uint32_t light, source;
+    uint32_t light;
   };
   std::vector<Lamp> lamps_;
 };
@@ -44,14 +42,13 @@ class LampsAlongRay {
 
   struct Sample {
     uint32_t light;  ///< index in the LightSet
-    uint32_t source;
-    float t;    ///< parameter of the ray
-    float pdf;  ///< of the lamp and of t, per metre
+    float t;         ///< parameter of the ray
+    float pdf;       ///< of the lamp and of t, per metre
   };
   /// u picks the lamp, v the point; empty when no lamp shines on the ray.
   std::optional<Sample> sample(float u, float v) const;
-  /// Of sample() choosing the lamp with that source at t.
-  float pdf(uint32_t source, float t) const;
+  /// Of sample() choosing that light at t; 0 where it is none of the lamps.
+  float pdf(const Light* light, float t) const;
 
  private:
   /// More lamps than these are picked alike, without being looked at one by one.
@@ -70,6 +67,7 @@ class LampsAlongRay {
   const std::vector<Lamps::Lamp>& lamps_;
   Vec3d origin_, direction_;
   double begin_, end_;
+  float time_;
   std::array<View, most_weighed> views_;
   std::array<float, most_weighed> weights_;
   float all_weights_ = 0;

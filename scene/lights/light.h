@@ -8,6 +8,8 @@
 
 namespace vernier {
 
+class Light;
+
 /// What a light is part of.
 struct LightSource {
   enum class Kind : uint8_t { instance, lamp, environment };
@@ -24,7 +26,8 @@ struct LightSample {
   float pdf = 0;          ///< per solid angle; 1 for a delta light
   bool is_delta = false;  ///< cannot be met by a ray
   Ray shadow;             ///< from the point to the light: what lies on it takes its part
-  LightSource source;     ///< this and the next are set by Scene::sample_light
+  LightSource source;     ///< this and what follows are set by Scene::sample_light
+  const Light* light = nullptr;
   float choice_prob = 1;  ///< of having chosen the light among all, in `pdf` or `radiance` already
 };
 

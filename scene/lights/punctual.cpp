@@ -1,30 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/lights/punctual.h"
 
+#include <fmt/format.h>
+
+#include "core/math/moments.h"
+#include "scene/moving_mesh.h"
+
 namespace vernier {
 
 using Kind = PunctualLightDescription::Kind;
 
 PunctualLight::PunctualLight(const PunctualLightDescription& d)
     : kind_(d.kind),
-      position_(d.to_world.origin),
-      direction_(normalize(-d.to_world.z)),
+      place_{d.to_world.origin, normalize(-d.to_world.z)},
       intensity_(d.color * d.intensity),
       range_(d.range),
       cos_inner_(std::cos(d.inner_cone)),
-      cos_outer_(std::cos(d.outer_cone)) {}
+      cos_outer_(std::cos(d.outer_cone)) {
+  check_moment_count(d.moments.size(), fmt::format("the light '{}'", d.name));
+  for (const Transform& m : d.moments) moments_.push_back({m.origin, normalize(-m.z)});
+}
+
+PunctualLight::Place PunctualLight::place_at(float time) const {
+  if (moments_.empty()) return place_;
+  const auto [first, part] = moments_around(time, moments_.size());
+  const Place &from = moments_[first], &to = moments_[first + 1];
+  return {between(from.position, to.position, part),
+          unit_or(between(from.direction, to.direction, part), from.direction)};
+}
 
 std::optional<LightSample> PunctualLight::sample(const SurfacePoint& from, const Vec2d& /*u*/) const {
+  const auto [position, direction] = place_at(from.time);
   LightSample sample;
   sample.pdf = 1;
   sample.is_delta = true;
   if (kind_ == Kind::directional) {
-    sample.wi = -direction_;
+    sample.wi = -direction;
     sample.radiance = intensity_;
     sample.shadow = from.spawn(sample.wi);
     return sample;
   }
-  const Vec3f to_light = position_ - from.position;
+  const Vec3f to_light = position - from.position;
   const float distance2 = length_squared(to_light);
   if (!(distance2 > 0)) return std::nullopt;
   sample.wi = to_light * (1 / std::sqrt(distance2));
@@ -34,13 +50,13 @@ std::optional<LightSample> PunctualLight::sample(const SurfacePoint& from, const
   if (kind_ == Kind::spot) {
     // Angular attenuation (KHR_lights_punctual, "Inner and Outer Cone Angles") without its sample code's
     // lower limit of the width, which would dim narrow cones and blur sharp edges.
-    const float inside = -dot(sample.wi, direction_) - cos_outer_, width = cos_inner_ - cos_outer_;
+    const float inside = -dot(sample.wi, direction) - cos_outer_, width = cos_inner_ - cos_outer_;
     if (inside < 0) return std::nullopt;
     if (inside < width) attenuation *= square(inside / width);
   }
   if (!(attenuation > 0)) return std::nullopt;
   sample.radiance = intensity_ * attenuation;
-  sample.shadow = from.spawn_to(position_, {0, 0, 0}, {0, 0, 1});
+  sample.shadow = from.spawn_to(position, {0, 0, 0}, {0, 0, 1});
   return sample;
 }
 
@@ -64,9 +80,17 @@ float PunctualLight::power(const Bounds& scene) const {
 
 std::optional<LightBounds> PunctualLight::bounds() const {
   if (kind_ == Kind::directional) return std::nullopt;
+  if (moments_.empty()) return bounds_at(place_);
+  LightBounds all;
+  for (const Place& moment : moments_) all = merge(all, bounds_at(moment));
+  all.power = power({});
+  return all;
+}
+
+LightBounds PunctualLight::bounds_at(const Place& place) const {
   LightBounds bounds;
-  bounds.box.add(position_);
-  bounds.axis = direction_;
+  bounds.box.add(place.position);
+  bounds.axis = place.direction;
   bounds.power = power({});
   if (kind_ == Kind::spot) {
     bounds.cos_emission = cos_outer_;

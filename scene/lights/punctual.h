@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "scene/lights/light.h"
 #include "vernier/scene.h"
 
@@ -17,9 +19,22 @@ class PunctualLight : public Light {
   std::optional<LightBounds> bounds() const override;
   bool is_delta() const override { return true; }
 
+  /// Where it is, and where spot and directional lights shine to.
+  struct Place {
+    Vec3f position, direction;
+  };
+  /// At a time of the shutter.
+  Place place_at(float time) const;
+  float range() const { return range_; }
+  /// Of the half angle that it shines into; -1: to all sides.
+  float cos_outer() const { return kind_ == PunctualLightDescription::Kind::spot ? cos_outer_ : -1; }
+
  private:
+  LightBounds bounds_at(const Place& place) const;
+
   PunctualLightDescription::Kind kind_;
-  Vec3f position_, direction_;  ///< direction: where spot and directional lights shine to
+  Place place_;                 ///< in the middle of the shutter
+  std::vector<Place> moments_;  ///< empty: it stands still
   Rgb intensity_;
   float range_, cos_inner_, cos_outer_;
 };

@@ -4,6 +4,7 @@
 #include "core/sampling/spherical_triangle.h"
 #include "core/sampling/warp.h"
 #include "scene/emission.h"
+#include "scene/moving_mesh.h"
 
 namespace vernier {
 namespace {
@@ -16,19 +17,24 @@ Vec3f doubled_area(const Vec3f& a, const Vec3f& b, const Vec3f& c) { return cros
 /// the two cannot differ.
 class TriangleLight::View {
  public:
-  View(const TriangleLight& light, const Vec3f& from) : light_(light) {
-    const auto& [a, b, c] = light.corners_;
-    is_dark_ = !light.material_->double_sided() && !(dot(from - a, light.normal_) > 0);
-    const Vec3f center = light.opposite_ ? (b + c) * 0.5f : (a + b + c) * (1 / 3.f);
-    if (is_dark_ || length_squared(center - from) > light.near2_) return;
+  /// At a time of the shutter.
+  View(const TriangleLight& light, const Vec3f& from, float time)
+      : light_(light), moved_(light.moments_ > 0 ? std::optional(light.shape_at(time)) : std::nullopt) {
+    const auto& [a, b, c] = shape().corners;
+    const std::optional<Vec3f>& opposite = shape().opposite;
+    is_dark_ = !light.material_->double_sided() && !(dot(from - a, shape().normal) > 0);
+    const Vec3f center = opposite ? (b + c) * 0.5f : (a + b + c) * (1 / 3.f);
+    if (is_dark_ || length_squared(center - from) > shape().near2) return;
     first_.emplace(a - from, b - from, c - from, doubled_area(a, b, c));
     solid_angle_ = first_->solid_angle();
-    if (!light.opposite_) return;
+    if (!opposite) return;
     // Its arcs go on where those of the first end.
-    const Vec3f& d = *light.opposite_;
+    const Vec3f& d = *opposite;
     second_.emplace(c - from, b - from, d - from, doubled_area(c, b, d));
     solid_angle_ += second_->solid_angle();
   }
+
+  const Shape& shape() const { return moved_ ? *moved_ : light_.shape_; }
 
   /// Whether it certainly sends no light here.
   bool is_dark() const { return is_dark_ || (first_ && solid_angle_ == 0); }
@@ -37,11 +43,11 @@ class TriangleLight::View {
   /// half.
   Vec2f sample(const Vec2f& u) const {
     if (!first_) {
-      if (light_.opposite_) return u;
+      if (shape().opposite) return u;
       float pdf = 1;
       return sample_triangle(light_.texture_.empty() ? u : light_.texture_.sample(u, pdf));
     }
-    if (!light_.opposite_) return first_->sample(u);
+    if (!shape().opposite) return first_->sample(u);
     const float share = first_->solid_angle() / solid_angle_;
     if (u.x < share) return first_->sample({u.x / share, u.y});
     const Vec2f other = second_->sample({(u.x - share) / (1 - share), u.y});
@@ -52,12 +58,13 @@ class TriangleLight::View {
   float pdf(const Vec2f& place, float distance2, float cosine) const {
     if (is_dark() || cosine == 0) return 0;
     if (first_) return 1 / solid_angle_;
-    const float by_area = distance2 / (cosine * light_.area_);
+    const float by_area = distance2 / (cosine * shape().area);
     return light_.texture_.empty() ? by_area : by_area * light_.texture_.pdf(invert_sample_triangle(place));
   }
 
  private:
   const TriangleLight& light_;
+  const std::optional<Shape> moved_;  ///< of a light that moves
   bool is_dark_ = false;
   std::optional<SphericalTriangle> first_, second_;  ///< of near lights
   float solid_angle_ = 0;
@@ -69,57 +76,68 @@ TriangleLight::TriangleLight(const SceneGeometry& geometry, const Material& mate
       material_(&material),
       instance_(instance),
       primitive_(primitive),
-      corners_(geometry.triangle(instance, primitive)),
-      area_(length(doubled_area(corners_[0], corners_[1], corners_[2])) / 2) {
-  const SurfacePoint first = geometry.surface_point(instance, primitive, {0, 0});
-  normal_ = first.ng;
-  const auto& [a, b, c] = corners_;
-  near2_ = std::max({length_squared(b - a), length_squared(c - b), length_squared(a - c)});
-  // The bound is linear in the barycentrics, so it is largest at a corner.
-  error_ = max(first.error, max(geometry.surface_point(instance, primitive, {1, 0}).error,
-                                geometry.surface_point(instance, primitive, {0, 1}).error));
+      shape_(shape_at(middle_of_shutter)),
+      moments_(geometry.moments(instance)) {
   if (material.emits_evenly())
     even_ = {{material.emission({}, false, 1), material.emission({}, true, 1)}, material.coverage({})};
   measure_emission();
 }
 
+TriangleLight::Shape TriangleLight::shape_at(float time) const {
+  Shape shape;
+  shape.corners = geometry_->triangle(instance_, primitive_, time);
+  const auto& [a, b, c] = shape.corners;
+  shape.area = length(doubled_area(a, b, c)) / 2;
+  const SurfacePoint first = geometry_->surface_point(instance_, primitive_, {0, 0}, time);
+  shape.normal = first.ng;
+  shape.near2 =
+      texture_.empty() ? std::max({length_squared(b - a), length_squared(c - b), length_squared(a - c)}) : 0;
+  // The bound is linear in the barycentrics, so it is largest at a corner.
+  shape.error = max(first.error, max(geometry_->surface_point(instance_, primitive_, {1, 0}, time).error,
+                                     geometry_->surface_point(instance_, primitive_, {0, 1}, time).error));
+  return shape;
+}
+
 bool TriangleLight::join(const TriangleLight& other) {
-  if (!even_ || opposite_ || other.opposite_) return false;
+  if (!even_ || moments_ > 0 || shape_.opposite || other.shape_.opposite) return false;
   for (size_t i = 0; i < 3; ++i)
     for (size_t j = 0; j < 3; ++j) {
-      const Vec3f a = corners_[i], b = corners_[(i + 1) % 3], c = corners_[(i + 2) % 3];
-      const Vec3f d = other.corners_[j];
-      if (other.corners_[(j + 1) % 3] != c || other.corners_[(j + 2) % 3] != b) continue;
+      const auto& mine = shape_.corners;
+      const auto& its = other.shape_.corners;
+      const Vec3f a = mine[i], b = mine[(i + 1) % 3], c = mine[(i + 2) % 3];
+      const Vec3f d = its[j];
+      if (its[(j + 1) % 3] != c || its[(j + 2) % 3] != b) continue;
       const Vec3f off = abs((b - a) - (d - c));
       // No more than rounding of the corners explains.
-      const Vec3f tolerance = max(error_, other.error_);
+      const Vec3f tolerance = max(shape_.error, other.shape_.error);
       if (!(off.x <= tolerance.x && off.y <= tolerance.y && off.z <= tolerance.z)) return false;
-      corners_ = {a, b, c};
-      opposite_ = d;
+      shape_ = {{a, b, c},
+                d,
+                shape_.normal,
+                tolerance,
+                shape_.area + other.shape_.area,
+                std::max({shape_.near2, other.shape_.near2, length_squared(d - a)})};
       opposite_primitive_ = other.primitive_;
-      near2_ = std::max({near2_, other.near2_, length_squared(d - a)});
-      error_ = tolerance;
-      area_ += other.area_;
       power_ += other.power_;
       return true;
     }
   return false;
 }
 
-Vec3f TriangleLight::at(const Vec2f& place) const {
-  const auto& [a, b, c] = corners_;
+Vec3f TriangleLight::Shape::at(const Vec2f& place) const {
+  const auto& [a, b, c] = corners;
   const float rest = 1 - place.x - place.y;
-  if (opposite_ && rest < 0) return *opposite_ * -rest + c * (1 - place.x) + b * (1 - place.y);
+  if (opposite && rest < 0) return *opposite * -rest + c * (1 - place.x) + b * (1 - place.y);
   return a * rest + b * place.x + c * place.y;
 }
 
 TriangleId TriangleLight::triangle_at(const Vec2f& place) const {
-  return {instance_, opposite_ && place.x + place.y > 1 ? opposite_primitive_ : primitive_};
+  return {instance_, shape_.opposite && place.x + place.y > 1 ? opposite_primitive_ : primitive_};
 }
 
-Rgb TriangleLight::emission(const Vec2f& barycentrics, bool front, const Vec3f& wo) const {
+Rgb TriangleLight::emission(const Vec2f& barycentrics, float time, bool front, const Vec3f& wo) const {
   if (even_) return even_->emission[front];
-  const SurfacePoint point = geometry_->surface_point(instance_, primitive_, barycentrics);
+  const SurfacePoint point = geometry_->surface_point(instance_, primitive_, barycentrics, time);
   return vernier::emission(*geometry_, *material_, point, front, wo);
 }
 
@@ -130,34 +148,62 @@ float TriangleLight::coverage(const Vec2f& barycentrics) const {
 }
 
 std::optional<LightSample> TriangleLight::sample(const SurfacePoint& from, const Vec2d& u) const {
-  const View view(*this, from.position);
+  const View view(*this, from.position, from.time);
   if (view.is_dark()) return std::nullopt;
   const Vec2f place = view.sample(to_float(u));
-  const Vec3f on = at(place);
+  const Vec3f on = view.shape().at(place);
   const Vec3f to_light = on - from.position;
   const float distance2 = length_squared(to_light);
   if (!(distance2 > 0)) return std::nullopt;
   const Vec3f wi = to_light * (1 / std::sqrt(distance2));
-  const float cosine = -dot(wi, normal_);
-  const Rgb radiance = emission(place, cosine > 0, -wi) * coverage(place);
+  const float cosine = -dot(wi, view.shape().normal);
+  const Rgb radiance = emission(place, from.time, cosine > 0, -wi) * coverage(place);
   const float pdf = view.pdf(place, distance2, std::abs(cosine));
   if (!(pdf > 0) || is_black(radiance)) return std::nullopt;
-  return LightSample{wi, radiance, pdf, false, from.spawn_to(on, error_, normal_, triangle_at(place)), {}};
+  const Shape& shape = view.shape();
+  return LightSample{
+      wi, radiance, pdf, false, from.spawn_to(on, shape.error, shape.normal, triangle_at(place)), {}};
 }
 
 LightEval TriangleLight::eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const {
   const Vec2f place(on->u, on->v);
-  const Rgb radiance = emission(place, on->front, -wi);
+  const Rgb radiance = emission(place, from.time, on->front, -wi);
   if (is_black(radiance)) return {radiance, 0};
   const float distance2 = length_squared(on->position - from.position);
-  return {radiance, View(*this, from.position).pdf(place, distance2, std::abs(dot(wi, on->ng)))};
+  return {radiance, View(*this, from.position, from.time).pdf(place, distance2, std::abs(dot(wi, on->ng)))};
 }
 
+/// The normal of a triangle whose corners move at constant speed is a quadratic curve between two moments,
+/// within the cone of its three Bezier points (Farin 2002, "Curves and Surfaces for CAGD", 5th ed., 4.3).
 std::optional<LightBounds> TriangleLight::bounds() const {
+  if (moments_ == 0) return bounds_at(shape_);
+  LightBounds all;
+  for (size_t i = 0; i < moments_; ++i) {
+    const Shape shape = moment(i);
+    all = merge(all, bounds_at(shape));
+    if (i == 0) continue;
+    const Shape before = moment(i - 1);
+    const auto& [a0, b0, c0] = before.corners;
+    const auto& [a1, b1, c1] = shape.corners;
+    LightBounds between = bounds_at(shape);
+    between.axis = unit_or(cross(b0 - a0, c1 - a1) + cross(b1 - a1, c0 - a0), {0, 0, 0});
+    all = merge(all, between);
+  }
+  // Such a cone holds what lies between its directions only while it is narrower than a half space.
+  if (all.cos_spread < 0) all.cos_spread = -1;
+  all.power = power_;
+  return all;
+}
+
+TriangleLight::Shape TriangleLight::moment(size_t i) const {
+  return shape_at(float(i) / float(moments_ - 1));
+}
+
+LightBounds TriangleLight::bounds_at(const Shape& shape) const {
   LightBounds bounds;
-  for (const Vec3f& corner : corners_) bounds.box.add(corner);
-  if (opposite_) bounds.box.add(*opposite_);
-  bounds.axis = normal_;
+  for (const Vec3f& corner : shape.corners) bounds.box.add(corner);
+  if (shape.opposite) bounds.box.add(*shape.opposite);
+  bounds.axis = shape.normal;
   bounds.power = power_;
   bounds.two_sided = material_->double_sided();
   return bounds;
@@ -200,13 +246,15 @@ void TriangleLight::measure_emission() {
       squares += double(value) * value;
     }
   const double mean = sum / double(values.size());
-  power_ = pi * area_ * float(mean) * (material_->double_sided() ? 2 : 1);
+  float area = shape_.area;
+  for (size_t i = 0; i < moments_; ++i) area = std::max(area, moment(i).area);
+  power_ = pi * area * float(mean) * (material_->double_sided() ? 2 : 1);
   // As even as this, it is not worth a table.
   if (!(squares / double(values.size()) > 1.1 * mean * mean)) return;
   // What the readings missed is found by this part of the samples.
   for (float& value : values) value += 0.1f * float(mean);
   texture_ = Distribution2D(values, cells, cells);
-  near2_ = 0;
+  shape_.near2 = 0;
 }
 
 }  // namespace vernier

@@ -26,9 +26,22 @@ class TriangleLight : public Light {
  private:
   class View;
 
-  Vec3f at(const Vec2f& place) const;
+  /// Where it is at one time.
+  struct Shape {
+    std::array<Vec3f, 3> corners;   ///< world, counter-clockwise seen from the front
+    std::optional<Vec3f> opposite;  ///< of a parallelogram: the corner that lies across from the first
+    Vec3f normal;                   ///< unit, of the front
+    Vec3f error;                    ///< bound on the rounding of any point between the corners
+    float area;
+    float near2;  ///< squared distance of the center within which it is sampled by solid angle
+
+    Vec3f at(const Vec2f& place) const;
+  };
+  Shape shape_at(float time) const;
+  Shape moment(size_t i) const;
+  LightBounds bounds_at(const Shape& shape) const;
   TriangleId triangle_at(const Vec2f& place) const;
-  Rgb emission(const Vec2f& barycentrics, bool front, const Vec3f& wo) const;
+  Rgb emission(const Vec2f& barycentrics, float time, bool front, const Vec3f& wo) const;
   float coverage(const Vec2f& barycentrics) const;
   void measure_emission();
 
@@ -42,14 +55,11 @@ class TriangleLight : public Light {
   const Material* material_;
   uint32_t instance_, primitive_;
   std::optional<EvenEmission> even_;
-  std::array<Vec3f, 3> corners_;   ///< world, counter-clockwise seen from the front
-  std::optional<Vec3f> opposite_;  ///< of a parallelogram: the corner that lies across from the first
-  uint32_t opposite_primitive_ = 0;
-  Vec3f normal_;  ///< unit, of the front
-  Vec3f error_;   ///< bound on the rounding of any point between the corners
-  float area_, power_ = 0;
-  float near2_ = 0;         ///< squared distance of the center within which it is sampled by solid angle
   Distribution2D texture_;  ///< of emission over the square that sample_triangle() maps; empty: even
+  Shape shape_;             ///< in the middle of the shutter
+  size_t moments_ = 0;      ///< at so many it is known where the triangle is; 0: it stands still
+  uint32_t opposite_primitive_ = 0;
+  float power_ = 0;
 };
 
 }  // namespace vernier

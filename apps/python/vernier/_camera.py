@@ -39,6 +39,8 @@ class Camera:
         ymag: half the height that an orthographic camera shows, metres; xmag: half its width, None: by the picture.
         lens_radius: of a thin lens, metres; 0: a pinhole, which shows all sharp.
         focus_distance: along the axis to the plane that the lens shows sharp, metres.
+        moments: of one that moves while the shutter is open, where it is at 2, 3, 5 and so on to 33 evenly spaced moments
+            from the opening to the closing, as ``matrix``, which is that of the middle; none: it stands still.
         name: that error messages and picture headers call it.
     """
 
@@ -51,12 +53,15 @@ class Camera:
     lens_radius: float = 0.0
     focus_distance: float = 1.0
     name: str = ""
+    moments: tuple[np.ndarray, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "matrix", matrix44(self.matrix, "camera matrix"))
-        axes = self.matrix[:3, :3]
-        if not np.allclose(axes.T @ axes, np.eye(3), atol=1e-4):
-            raise UsageError("camera matrix: expected orthonormal axes, without scale or shear")
+        object.__setattr__(self, "moments", tuple(matrix44(moment, "camera moment") for moment in self.moments))
+        for matrix in (self.matrix, *self.moments):
+            axes = matrix[:3, :3]
+            if not np.allclose(axes.T @ axes, np.eye(3), atol=1e-4):
+                raise UsageError("camera matrix: expected orthonormal axes, without scale or shear")
 
     @staticmethod
     def look_at(eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0, 1, 0), **rest: Any) -> Camera:
@@ -78,7 +83,8 @@ class Camera:
 
     def _to_json(self, shape: float) -> dict[str, Any]:
         """As settings hold it; ``shape`` is the picture's width over height."""
-        return {
+        moments = {"moments": [_columns(moment) for moment in self.moments]} if self.moments else {}
+        return moments | {
             "name": self.name,
             "kind": self.kind,
             "yfov": float(self.yfov),
@@ -87,17 +93,26 @@ class Camera:
             "ymag": float(self.ymag),
             "lens_radius": float(self.lens_radius),
             "focus_distance": float(self.focus_distance) if math.isfinite(self.focus_distance) else None,
-            "to_world": [self.matrix[:3, column].tolist() for column in range(4)],
+            "to_world": _columns(self.matrix),
         }
+
+
+def _columns(matrix: np.ndarray) -> list[list[float]]:
+    return [matrix[:3, column].tolist() for column in range(4)]
+
+
+def _matrix(columns: list[list[float]]) -> np.ndarray:
+    matrix = np.eye(4)
+    matrix[:3, :] = np.array(columns).T
+    return matrix
 
 
 def camera_from_settings(settings: str) -> Camera:
     """The camera of settings in JSON."""
     values = json.loads(settings)["camera"]
-    matrix = np.eye(4)
-    matrix[:3, :] = np.array(values.pop("to_world")).T
+    matrix, moments = _matrix(values.pop("to_world")), tuple(_matrix(m) for m in values.pop("moments", []))
     focus = values.pop("focus_distance")
-    return Camera(matrix=matrix, focus_distance=math.inf if focus is None else focus, **values)
+    return Camera(matrix=matrix, moments=moments, focus_distance=math.inf if focus is None else focus, **values)
 
 
 def settings_with(camera: Camera, shape: float) -> dict[str, Any]:

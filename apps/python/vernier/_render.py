@@ -57,6 +57,8 @@ class Settings(TypedDict, total=False):
     """"box", "gaussian" or "blackman-harris", with ":WIDTH" in pixels if it is not to be the usual one ("box")."""
     crop: tuple[int, int, int, int] | None
     """x, y, width and height of the part of the picture that is rendered (None: all)."""
+    row_exposure: float
+    """Part of the shutter for which each row is exposed, the first from its opening on, the last until its closing (1)."""
     adaptive: bool
     """Spend samples where they lower the picture's error (True)."""
     seed: int
@@ -127,6 +129,7 @@ def _request(scene: Scene, given: Settings) -> Request:
         settings[name] = str(given.get(name, settings[name]))
     for name in ("ambient", "cutoff"):
         settings[name] = float(given.get(name, settings[name]))  # type: ignore[arg-type]
+    settings["row-exposure"] = float(given.get("row_exposure", 1.0))
     settings["adaptive"] = bool(given.get("adaptive", True))
     groups = given.get("light_groups", {})
     settings["light-split"] = {"ways": [str(way) for way in given.get("light_ways", ())],

@@ -42,6 +42,7 @@ class _Reading:
 
     variant: str = ""
     time: float | None = None
+    shutter: tuple[float, float] | None = None
     animation: str = ""
     strict: bool = False
 
@@ -110,13 +111,17 @@ class Scene:
     def cameras(self) -> list[Camera]:
         return [camera for camera, defect in self._cameras if not defect]
 
-    def at(self, time: float | None = None, *, animation: str | None = None, variant: str | None = None) -> Scene:
-        """The same file at another time (seconds), by another animation, or in another material variant.
+    def at(self, time: float | None = None, *, shutter: tuple[float, float] | None = None, animation: str | None = None,
+           variant: str | None = None) -> Scene:
+        """The same file at another time (seconds), with another shutter, by another animation, or in another material
+        variant.
 
         What is told nothing of stays. Textures and what does not move are not read again.
         """
         old = self._reading
-        reading = replace(old, time=old.time if time is None else time, variant=old.variant if variant is None else variant,
+        reading = replace(old, time=old.time if time is None else time,
+                          shutter=old.shutter if shutter is None else shutter,
+                          variant=old.variant if variant is None else variant,
                           animation=old.animation if animation is None else animation)
         return Scene(self._file, self._file_lock, reading)
 
@@ -153,8 +158,8 @@ class Scene:
     def _build(self, kind: Kind) -> _core.BuiltScene:
         reading = self._reading
         with self._file_lock:
-            built = _core.BuiltScene(self._file, reading.variant, reading.time, reading.animation, reading.strict,
-                                     kind.ground, kind.accelerator)
+            built = _core.BuiltScene(self._file, reading.variant, reading.time, reading.shutter, reading.animation,
+                                     reading.strict, kind.ground, kind.accelerator)
         if fog := kind.fog:
             albedo = fog.albedo if isinstance(fog.albedo, tuple) else (fog.albedo,) * 3
             built.fill_air(fog.density, albedo, fog.anisotropy, fog.radius)
@@ -279,8 +284,8 @@ class Request:
 
 
 def load(source: SceneSource, *, lights: Sequence[Light] = (), cameras: Sequence[Camera] = (), name: str = "",
-         variant: str = "", time: float | None = None, animation: str = "", strict: bool = False,
-         allow_outside_files: bool = False) -> Scene:
+         variant: str = "", time: float | None = None, shutter: tuple[float, float] | None = None, animation: str = "",
+         strict: bool = False, allow_outside_files: bool = False) -> Scene:
     """Reads a scene and builds what answers rays.
 
     Args:
@@ -290,6 +295,8 @@ def load(source: SceneSource, *, lights: Sequence[Light] = (), cameras: Sequence
         name: that errors call a scene of bytes or meshes.
         variant: of KHR_materials_variants, by name.
         time: seconds at which an animation poses the scene; None: at rest.
+        shutter: seconds, from that time on, at which it opens and closes; what an animation moves meanwhile is blurred.
+            None: everything stands still.
         animation: name, number or "all"; none: all when no two set the same thing, else the first.
         strict: raise InputError for anything that is not honoured exactly.
         allow_outside_files: the file may refer to others outside its folder.
@@ -304,8 +311,8 @@ def load(source: SceneSource, *, lights: Sequence[Light] = (), cameras: Sequence
         file = _core.SceneFile.parse(name or "bytes", bytes(source))
     else:
         meshes = [source] if isinstance(source, Mesh) else source
-        return load(glb(meshes, lights, cameras), name=name or "meshes", variant=variant, time=time, animation=animation,
-                    strict=strict)
+        return load(glb(meshes, lights, cameras), name=name or "meshes", variant=variant, time=time, shutter=shutter,
+                    animation=animation, strict=strict)
     if lights or cameras:
         raise UsageError("lights and cameras belong to scenes of meshes; a file has its own")
-    return Scene(file, threading.Lock(), _Reading(variant, time, animation, strict))
+    return Scene(file, threading.Lock(), _Reading(variant, time, shutter, animation, strict))
