@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "integrators/light_emission.h"
 #include "integrators/transport.h"
 
 namespace vernier {
@@ -9,6 +10,8 @@ namespace {
 ///
 /// A surface that a path passes straight on hides no light from the vertex before it: next-event estimation
 /// looks through, and what the path meets beyond is weighted as if that vertex saw it.
+///
+/// Light of lamps that is scattered first by a sharp lobe is left to LightPathKind::caustics.
 class PathIntegrator : public Integrator {
  public:
   explicit PathIntegrator(const IntegratorOptions& options) : options_(options) {}
@@ -22,6 +25,7 @@ class PathIntegrator : public Integrator {
     float audit_scale = 1;  // of the few paths that go on beyond the depth limit
     Scattering last;        // how the ray came to be
     LightRoute route;       // on which light comes to the camera; kept where parts are asked for
+    SharpView view;         // whether light paths can end where the camera looks
     bool looks_through = options_.background_apart;  // the camera sees along it, through clear surfaces
     auto hit = intersect_from_camera(scene, segment);
     ++out.rays.camera;
@@ -61,7 +65,8 @@ class PathIntegrator : public Integrator {
       if (options_.light_sampling != LightSampling::bsdf)
         if (const auto light = scene.sample_light(*hit, light_choice, light_point);
             light && !(looks_through && will_be_met(*light, surface)))
-          add_direct(out, {scene, *hit, surface, throughput, depth, route}, *light, context, shadow_roulette);
+          add_direct(out, {scene, *hit, surface, throughput, depth, route, view}, *light, context,
+                     shadow_roulette);
       const auto next = surface.sample(lobe_choice, direction);
       if (!next) break;
       if (context.sorter) route = route.scattered(surface, next->wi, next->is_delta, next->is_straight);
@@ -71,13 +76,22 @@ class PathIntegrator : public Integrator {
       if (roulette >= survival) break;
       throughput /= survival;
       looks_through = looks_through && next->is_transmitted;
-      if (!next->is_straight) last = {*hit, next->pdf, next->is_delta || looks_through};
+      if (!next->is_straight) {
+        last = {*hit, next->pdf, next->is_delta || looks_through};
+        view.scatter(next->is_delta);
+      }
       looks_through = looks_through && !next->is_diffuse;
       segment = hit->spawn(next->wi);
       hit = intersect(scene, segment);
       ++out.rays.bounce;
     }
     return out;
+  }
+
+  LightPathKind light_paths(const Scene& scene) const override {
+    const bool follows = options_.caustics == Caustics::on ||
+                         (options_.caustics == Caustics::automatic && casts_caustics(scene));
+    return follows ? LightPathKind::caustics : LightPathKind::none;
   }
 
  private:
@@ -91,6 +105,17 @@ class PathIntegrator : public Integrator {
     bool is_delta = true;
   };
 
+  /// Whether the first surface that scattered a path did so by a sharp lobe: then no path from a light ends
+  /// there.
+  struct SharpView {
+    bool is_scattered = false, is_sharp = false;
+
+    void scatter(bool is_delta) {
+      is_sharp = is_scattered ? is_sharp : is_delta;
+      is_scattered = true;
+    }
+  };
+
   /// Where a path may be lit.
   struct Vertex {
     const Scene& scene;
@@ -99,6 +124,7 @@ class PathIntegrator : public Integrator {
     Rgb throughput;
     int depth;
     const LightRoute& route;
+    const SharpView& view;
   };
 
   /// How light came, for who keeps it apart.
@@ -165,7 +191,7 @@ class PathIntegrator : public Integrator {
       const LightRoute route =
           context.sorter ? vertex.route.scattered(vertex.surface, light.wi, false, false) : vertex.route;
       add(out, vertex.depth + 1 + passage.surfaces, radiance, {context.sorter, route, light.source});
-    } else if (light.is_delta) {
+    } else if (light.is_delta && !(context.has_caustics && passage.is_sharp && !vertex.view.is_sharp)) {
       out.missing.bent += radiance;
     }
   }
@@ -180,12 +206,10 @@ class PathIntegrator : public Integrator {
                : 1;
   }
 
-  /// Russian roulette. Five times the throughput instead of the throughput itself: ending paths that still
-  /// carry a fifth of their light costs more in variance than it saves in rays on measured scenes.
+  /// Russian roulette.
   float survival_probability(int depth, const Rgb& throughput) const {
-    const float kept = 5 * max_component(throughput);
-    if (depth >= options_.max_depth) return std::min(0.9f, kept);
-    return options_.russian_roulette && depth > 1 ? std::min(1.f, kept) : 1;
+    if (depth >= options_.max_depth) return std::min(0.9f, roulette_survival(throughput));
+    return options_.russian_roulette && depth > 1 ? roulette_survival(throughput) : 1;
   }
 
   IntegratorOptions options_;

@@ -24,9 +24,22 @@ class Camera {
   /// "Distributed Ray Tracing") whose angle of view does not change with its focus.
   Ray ray(const Vec2f& raster, const Vec2f& on_lens) const;
 
+  /// How a point of the world is seen.
+  struct Sight {
+    Vec3f origin;  ///< of the ray to it
+    Vec2f raster;
+    /// Of the picture, in pixels, over that of a surface at the point that faces the ray, in square metres.
+    float area;
+  };
+  /// From a point of the opening, which is the unit disk; empty when it is not in front of the camera.
+  std::optional<Sight> sight(const Vec3f& world, const Vec2f& on_lens) const;
+
   /// Raster position of a world point, seen from the lens's centre; empty when it is not in front of the
   /// camera.
   std::optional<Vec2f> project(const Vec3f& world) const;
+
+  /// Its picture goes on beyond its edges, at the other side.
+  bool is_panorama() const { return kind_ == CameraDescription::Kind::panorama; }
 
   /// Metres along the axis to what `ray`, one of this camera's from the lens's centre, meets at `t`; for a
   /// panorama, which has no axis, along the ray.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/lights/triangle_light.h"
 
+#include "core/math/frame.h"
 #include "core/sampling/spherical_triangle.h"
 #include "core/sampling/warp.h"
 #include "scene/emission.h"
@@ -37,9 +38,8 @@ class TriangleLight::View {
   /// half.
   Vec2f sample(const Vec2f& u) const {
     if (!first_) {
-      if (light_.opposite_) return u;
-      float pdf = 1;
-      return sample_triangle(light_.texture_.empty() ? u : light_.texture_.sample(u, pdf));
+      float pdf;
+      return light_.place_by_area(u, pdf);
     }
     if (!light_.opposite_) return first_->sample(u);
     const float share = first_->solid_angle() / solid_angle_;
@@ -113,6 +113,16 @@ Vec3f TriangleLight::at(const Vec2f& place) const {
   return a * rest + b * place.x + c * place.y;
 }
 
+Vec2f TriangleLight::place_by_area(const Vec2f& u, float& pdf) const {
+  pdf = 1 / area_;
+  if (opposite_) return u;
+  if (texture_.empty()) return sample_triangle(u);
+  float of_texture = 1;
+  const Vec2f place = sample_triangle(texture_.sample(u, of_texture));
+  pdf *= of_texture;
+  return place;
+}
+
 TriangleId TriangleLight::triangle_at(const Vec2f& place) const {
   return {instance_, opposite_ && place.x + place.y > 1 ? opposite_primitive_ : primitive_};
 }
@@ -143,6 +153,24 @@ std::optional<LightSample> TriangleLight::sample(const SurfacePoint& from, const
   const float pdf = view.pdf(place, distance2, std::abs(cosine));
   if (!(pdf > 0) || is_black(radiance)) return std::nullopt;
   return LightSample{wi, radiance, pdf, false, from.spawn_to(on, error_, normal_, triangle_at(place)), {}};
+}
+
+std::optional<LightRay> TriangleLight::emit(const Bounds& /*scene*/, const Vec2d& place,
+                                            const Vec2f& direction) const {
+  float pdf;
+  const Vec2f at_place = place_by_area(to_float(place), pdf);
+  // One side or, by the first number's halves, either.
+  const bool two_sided = material_->double_sided();
+  const bool front = !two_sided || direction.x < 0.5f;
+  const Vec2f u(two_sided ? 2 * direction.x - (front ? 0.f : 1.f) : direction.x, direction.y);
+  const Vec3f local = sample_cosine_hemisphere(u);
+  const Vec3f w = Frame::from_normal(front ? normal_ : -normal_).to_world(local);
+  // Over the density by solid angle the cosine leaves pi.
+  const Rgb flux = emission(at_place, front, w) * (coverage(at_place) * pi * (two_sided ? 2.f : 1.f) / pdf);
+  if (!(local.z > 0) || is_black(flux)) return std::nullopt;
+  LightRay light{{offset_ray_origin(at(at_place), error_, normal_, w), 0, w}, flux};
+  light.ray.leaves = triangle_at(at_place);
+  return light;
 }
 
 LightEval TriangleLight::eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const {

@@ -20,6 +20,8 @@ class TriangleLight : public Light {
 
   std::optional<LightSample> sample(const SurfacePoint& from, const Vec2d& u) const override;
   LightEval eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const override;
+  std::optional<LightRay> emit(const Bounds& scene, const Vec2d& place,
+                               const Vec2f& direction) const override;
   float power(const Bounds& /*scene*/) const override { return power_; }
   std::optional<LightBounds> bounds() const override;
 
@@ -27,6 +29,8 @@ class TriangleLight : public Light {
   class View;
 
   Vec3f at(const Vec2f& place) const;
+  /// A place by its part of the area, or of the texture's light, with the density per square metre.
+  Vec2f place_by_area(const Vec2f& u, float& pdf) const;
   TriangleId triangle_at(const Vec2f& place) const;
   Rgb emission(const Vec2f& barycentrics, bool front, const Vec3f& wo) const;
   float coverage(const Vec2f& barycentrics) const;

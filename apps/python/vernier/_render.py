@@ -40,9 +40,11 @@ class Settings(TypedDict, total=False):
     ground: str | None
     """Under the scene: "matte", a grey plane, or "shadow", of which only its shadow shows (None)."""
     integrator: str
-    """"path", "whitted" or "raycast" ("path")."""
+    """"path", "light", "whitted" or "raycast" ("path")."""
     max_depth: int
     """Path vertices after the camera (16)."""
+    caustics: str
+    """path: what lamps cast by mirrors and bending glass, "auto", "on" or "off" ("auto")."""
     show: str
     """raycast: what is shown ("normal")."""
     ambient: float
@@ -116,7 +118,7 @@ def _request(scene: Scene, given: Settings) -> Request:
     settings["crop"] = None if crop is None else [_whole(number, "crop") for number in crop]
     settings["seed"] = _whole(given.get("seed", 0), "seed")
     settings["max-depth"] = _whole(given.get("max_depth", settings["max-depth"]), "max_depth", 1)
-    for name in ("filter", "integrator", "show"):
+    for name in ("filter", "integrator", "caustics", "show"):
         settings[name] = str(given.get(name, settings[name]))
     for name in ("ambient", "cutoff"):
         settings[name] = float(given.get(name, settings[name]))  # type: ignore[arg-type]
