@@ -41,12 +41,20 @@ struct Estimate {
   LightParts parts;          ///< of `radiance`, where SampleContext::sorter asks for them
 };
 
+/// Which paths from lights bring light to a picture, beside what the integrator's camera samples find.
+enum class LightPathKind {
+  none,
+  caustics,  ///< those of lamps that first meet a mirror, or glass that bends them
+  all        ///< to surfaces that scatter light from there to the camera
+};
+
 /// What is known and wanted of a sample beside its ray.
 struct SampleContext {
   /// About the standard deviation of the pixel's samples in the channel where it is largest, 0 if unknown:
   /// noise far below it is not worth much effort. The mean does not depend on it.
   float spread = 0;
   const LightSorter* sorter = nullptr;  ///< keeps light apart; null: nobody asks
+  bool has_caustics = false;            ///< LightPathKind::caustics are followed beside it
 };
 
 /// A way to estimate the light along a camera ray. Immutable while rendering; called from many threads.
@@ -57,6 +65,9 @@ class Integrator {
   /// Block 0 of `sampler` belongs to the camera; the others are free.
   virtual Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler,
                             const SampleContext& context) const = 0;
+
+  /// What a picture of the scene needs beside camera samples.
+  virtual LightPathKind light_paths(const Scene& /*scene*/) const { return LightPathKind::none; }
 };
 
 /// One line of the table of integrators.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "integrators/light_emission.h"
 #include "integrators/scattering_stretch.h"
 
 namespace vernier {
@@ -10,6 +11,8 @@ namespace {
 /// A surface that a path passes straight on hides no light from the vertex before it: next-event estimation
 /// looks through, and what the path meets beyond is weighted as if that vertex saw it. A point where a medium
 /// scatters light is a vertex like any other, but for the depth, which counts surfaces.
+///
+/// Light of lamps that is scattered first by a sharp lobe is left to LightPathKind::caustics.
 class PathIntegrator : public Integrator {
  public:
   explicit PathIntegrator(const IntegratorOptions& options) : options_(options) {}
@@ -23,6 +26,7 @@ class PathIntegrator : public Integrator {
     float audit_scale = 1;  // of the few paths that go on beyond the depth limit
     Scattering last;        // how the ray came to be
     LightRoute route;       // on which light comes to the camera; kept where parts are asked for
+    SharpView view;         // whether light paths can end where the camera looks
     bool looks_through = options_.background_apart;  // the camera sees along it, through clear surfaces
     auto hit = intersect_from_camera(scene, segment);
     ++out.rays.camera;
@@ -34,7 +38,7 @@ class PathIntegrator : public Integrator {
       if (stretch.medium.scatters()) {
         scattering.emplace(scene, segment, stretch, hit, throughput);
         sampler.start_block(medium_blocks + uint32_t(vertex));
-        add_lit(out, *scattering, {scene, segment, throughput, depth, route}, context, sampler);
+        add_lit(out, *scattering, {scene, segment, throughput, depth, route, view}, context, sampler);
         throughput *= scattering->sample(sampler.next1_fine(), hit);
       } else {
         throughput *= transmittance(stretch);
@@ -78,7 +82,7 @@ class PathIntegrator : public Integrator {
             light && !(looks_through && will_be_met(*light, surface)))
           add_direct(out,
                      {scene, *hit, surface, in_medium ? throughput * scattering->weight(*light) : throughput,
-                      depth, route},
+                      depth, route, view},
                      *light, context, shadow_roulette);
       const auto next = surface.sample(lobe_choice, direction);
       if (!next) break;
@@ -89,13 +93,22 @@ class PathIntegrator : public Integrator {
       if (roulette >= survival) break;
       throughput /= survival;
       looks_through = looks_through && next->is_transmitted;
-      if (!next->is_straight) last = {*hit, next->pdf, next->is_delta || looks_through};
+      if (!next->is_straight) {
+        last = {*hit, next->pdf, next->is_delta || looks_through};
+        view.scatter(next->is_delta);
+      }
       looks_through = looks_through && !next->is_diffuse;
       segment = hit->spawn(next->wi);
       hit = intersect(scene, segment);
       ++out.rays.bounce;
     }
     return out;
+  }
+
+  LightPathKind light_paths(const Scene& scene) const override {
+    const bool follows = options_.caustics == Caustics::on ||
+                         (options_.caustics == Caustics::automatic && casts_caustics(scene));
+    return follows ? LightPathKind::caustics : LightPathKind::none;
   }
 
  private:
@@ -109,8 +122,16 @@ class PathIntegrator : public Integrator {
     bool is_delta = true;
   };
 
-  /// Blocks of the sampler for where a ray is scattered on its way; the lower ones are those of vertices.
-  static constexpr uint32_t medium_blocks = 1u << 20;
+  /// Whether the first surface that scattered a path did so by a sharp lobe: then no path from a light ends
+  /// there.
+  struct SharpView {
+    bool is_scattered = false, is_sharp = false;
+
+    void scatter(bool is_delta) {
+      is_sharp = is_scattered ? is_sharp : is_delta;
+      is_scattered = true;
+    }
+  };
 
   /// Where a path may be lit.
   struct Vertex {
@@ -120,6 +141,7 @@ class PathIntegrator : public Integrator {
     Rgb throughput;
     int depth;  ///< of light that it meets
     const LightRoute& route;
+    const SharpView& view;
   };
 
   /// A path on its way between vertices.
@@ -129,6 +151,7 @@ class PathIntegrator : public Integrator {
     Rgb throughput;
     int depth;  ///< of light that it meets
     const LightRoute& route;
+    const SharpView& view;
   };
 
   /// How light came, for who keeps it apart.
@@ -195,7 +218,7 @@ class PathIntegrator : public Integrator {
       const LightRoute route =
           context.sorter ? vertex.route.scattered(vertex.surface, light.wi, false, false) : vertex.route;
       add(out, vertex.depth + passage.surfaces, radiance, {context.sorter, route, light.source});
-    } else if (light.is_delta) {
+    } else if (light.is_delta && !(context.has_caustics && passage.is_sharp && !vertex.view.is_sharp)) {
       out.missing.bent += radiance;
     }
   }
@@ -209,7 +232,7 @@ class PathIntegrator : public Integrator {
     const auto lit = scattering.sample_lit(choice.x, choice.y);
     if (!lit) return;
     const Shading phase = shade(way.scene, lit->at, -way.segment.ray.direction);
-    add_direct(out, {way.scene, lit->at, phase, way.throughput * lit->weight, way.depth, way.route},
+    add_direct(out, {way.scene, lit->at, phase, way.throughput * lit->weight, way.depth, way.route, way.view},
                lit->light, context, roulette);
   }
 
@@ -223,16 +246,12 @@ class PathIntegrator : public Integrator {
                : 1;
   }
 
-  /// Russian roulette. Five times the throughput instead of the throughput itself: ending paths that still
-  /// carry a fifth of their light costs more in variance than it saves in rays on measured scenes.
-  /// A path that a medium scatters for ever, as an open surface around it may let happen, ends nevertheless.
+  /// Russian roulette.
   float survival_probability(int vertex, int depth, const Rgb& throughput) const {
-    const float kept = 5 * max_component(throughput);
-    if (depth > options_.max_depth) return std::min(0.9f, kept);
-    if (vertex > most_certain_vertices) return std::min(0.99f, kept);
-    return options_.russian_roulette && vertex > 1 ? std::min(1.f, kept) : 1;
+    const float survival = roulette_survival(throughput, vertex);
+    if (depth > options_.max_depth) return std::min(0.9f, survival);
+    return is_at_risk(options_, vertex) ? survival : 1;
   }
-  static constexpr int most_certain_vertices = 1000;
 
   IntegratorOptions options_;
 };

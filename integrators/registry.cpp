@@ -9,12 +9,14 @@
 namespace vernier {
 
 std::unique_ptr<Integrator> make_path(const IntegratorOptions&);
+std::unique_ptr<Integrator> make_light(const IntegratorOptions&);
 std::unique_ptr<Integrator> make_whitted(const IntegratorOptions&);
 std::unique_ptr<Integrator> make_raycast(const IntegratorOptions&);
 
 std::span<const IntegratorEntry> integrators() {
-  static constexpr std::array<IntegratorEntry, 3> table{{
+  static constexpr std::array<IntegratorEntry, 4> table{{
       {"path", "path tracing: all light, unbiased; tells what it cannot find", make_path, true},
+      {"light", "light tracing: all light but what mirrors and bending glass show the camera", make_light},
       {"whitted", "direct light, ambient, mirror reflection and refraction", make_whitted},
       {"raycast", "primary hits: normals, depth, ids, ... (--show)", make_raycast},
   }};

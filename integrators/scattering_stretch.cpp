@@ -24,7 +24,8 @@ ScatteringStretch::ScatteringStretch(const Scene& scene, const Segment& segment,
   const float last = hit ? std::min(stretch.end, hit->t - margin(segment, *hit)) : stretch.end;
   length_ = std::max(last - begin_, 0.f);
   // Lamps beyond a boundary that bends are not seen from inside.
-  if (!scene.lamps().empty() && length_ > 0 && stretch.medium.ior == Rgb(1, 1, 1))
+  const bool is_seen_straight = stretch.medium.ior == Rgb(1, 1, 1) && stretch.medium.sees_lights;
+  if (!scene.lamps().empty() && length_ > 0 && is_seen_straight)
     lamps_.emplace(scene.lamps(), segment.ray, begin_, begin_ + length_);
 }
 

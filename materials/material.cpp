@@ -81,6 +81,15 @@ bool Material::may_be_clear() const {
   return d.metallic_roughness_texture || square(d.roughness) < Dielectric::clear_limit;
 }
 
+bool Material::may_be_sharp() const {
+  const auto& d = description_;
+  const auto is_sharp = [](const TextureUse& texture, float roughness) {
+    return texture || square(roughness) < Dielectric::clear_limit;
+  };
+  return !d.unlit && (is_sharp(d.metallic_roughness_texture, d.roughness) ||
+                      (has_coat() && is_sharp(d.clearcoat_roughness_texture, d.clearcoat_roughness)));
+}
+
 Material::Side Material::make_side(bool front, const Rgb& outside_ior) const {
   const bool thin = !is_volume_boundary();
   const Rgb inside = thin ? Rgb(relative_index(description_)) : interior_ior();

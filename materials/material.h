@@ -58,6 +58,10 @@ class Material {
     return description_.normal_texture || (has_coat() && description_.clearcoat_normal_texture);
   }
   bool is_anisotropic() const { return description_.anisotropy > 0; }
+  /// Has lobes beside its base's, which differ with the side that they are seen from.
+  bool is_layered() const { return has_coat() || !is_black(description_.sheen_color); }
+  /// Some of its lobes may be so sharp that no light is scattered by them but along one direction.
+  bool may_be_sharp() const;
   bool has_coat() const { return description_.clearcoat > 0; }
 
   bool is_emissive() const { return is_emissive_; }

@@ -97,21 +97,45 @@ float Camera::depth(const Ray& ray, float t) const {
   return kind_ == CameraDescription::Kind::panorama ? t : -t * dot(ray.direction, place_.back);
 }
 
-std::optional<Vec2f> Camera::project(const Vec3f& world) const {
-  const Vec3f d = world - place_.origin;
+std::optional<Camera::Sight> Camera::sight(const Place& place, const Vec3f& world,
+                                           const Vec2f& on_lens) const {
+  const Vec2f shift = on_lens * lens_radius_;
+  Sight sight{
+      lens_radius_ > 0 ? place.origin + place.right * shift.x + place.up * shift.y : place.origin, {0, 0}, 0};
+  const Vec3f d = world - sight.origin;
   if (kind_ == CameraDescription::Kind::panorama) {
-    if (!(length(d) > 0)) return std::nullopt;
-    const float ahead = dot(d, place_.right), aside = dot(d, place_.back);
+    const float distance2 = length_squared(d);
+    if (!(distance2 > 0)) return std::nullopt;
+    const float ahead = dot(d, place.right), aside = dot(d, place.back), across = std::hypot(ahead, aside);
     const float u = std::atan2(aside, ahead) * (inv_pi / 2) + 0.5f;
-    const float v = std::atan2(std::hypot(ahead, aside), dot(d, place_.up)) * inv_pi;
-    return Vec2f(u * width_, v * height_);
+    const float v = std::atan2(across, dot(d, place.up)) * inv_pi;
+    sight.raster = {u * width_, v * height_};
+    sight.area = width_ * height_ * square(inv_pi) / (2 * across * std::sqrt(distance2));
+    return sight;
   }
-  const float depth = -dot(d, place_.back);
+  const float depth = -dot(d, place.back);
   if (!(depth > 0)) return std::nullopt;
-  const float scale = kind_ == CameraDescription::Kind::perspective ? 1 / depth : 1;
-  const float x = dot(d, place_.right) * scale / half_extent_.x,
-              y = dot(d, place_.up) * scale / half_extent_.y;
-  return Vec2f((x + 1) / 2 * width_, (1 - y) / 2 * height_);
+  const bool is_perspective = kind_ == CameraDescription::Kind::perspective;
+  const float scale = is_perspective ? 1 / depth : 1;
+  // What is in focus stays in its place whatever the point of the opening.
+  const float x = (dot(d, place.right) * scale + shift.x * inverse_focus_) / half_extent_.x;
+  const float y = (dot(d, place.up) * scale + shift.y * inverse_focus_) / half_extent_.y;
+  sight.raster = {(x + 1) / 2 * width_, (1 - y) / 2 * height_};
+  sight.area = width_ * height_ / (4 * half_extent_.x * half_extent_.y);
+  if (is_perspective)
+    sight.area *= length(d) / (square(depth) * depth);  // 1 / (z^2 cos)
+  else
+    sight.origin = world + place.back * depth;
+  return sight;
+}
+
+std::optional<Camera::Sight> Camera::sight(const Vec3f& world, const Vec2f& on_lens, float time) const {
+  return sight(place_at(time), world, on_lens);
+}
+
+std::optional<Vec2f> Camera::project(const Vec3f& world) const {
+  const auto seen = sight(place_, world, {0, 0});
+  return seen ? std::optional(seen->raster) : std::nullopt;
 }
 
 }  // namespace vernier

@@ -31,10 +31,23 @@ class Camera {
   bool moves() const { return !moments_.empty(); }
   /// The same rays at a time of the shutter; without a point of the lens, through its centre.
   Ray ray(const Vec2f& raster, const std::optional<Vec2f>& on_lens, float time) const;
+  /// How a point of the world is seen.
+  struct Sight {
+    Vec3f origin;  ///< of the ray to it
+    Vec2f raster;
+    /// Of the picture, in pixels, over that of a surface at the point that faces the ray, in square metres.
+    float area;
+  };
+  /// At a time of the shutter from a point of the opening, which is the unit disk; empty when it is not in
+  /// front of the camera.
+  std::optional<Sight> sight(const Vec3f& world, const Vec2f& on_lens, float time) const;
 
   /// Raster position of a world point, seen from the lens's centre; empty when it is not in front of the
   /// camera.
   std::optional<Vec2f> project(const Vec3f& world) const;
+
+  /// Its picture goes on beyond its edges, at the other side.
+  bool is_panorama() const { return kind_ == CameraDescription::Kind::panorama; }
 
   /// Metres along the axis to what `ray`, one of this camera's from the lens's centre, meets at `t`; for a
   /// panorama, which has no axis, along the ray.
@@ -51,6 +64,7 @@ class Camera {
     Imath::Quatf rotation;
   };
 
+  std::optional<Sight> sight(const Place& place, const Vec3f& world, const Vec2f& on_lens) const;
   static Place place_of(const Transform& to_world);
   Place place_at(float time) const;
   Vec2f on_image_plane(const Vec2f& raster) const;

@@ -184,6 +184,15 @@ void Scene::fill_air(const Fog& fog) {
                     {bounds().center(), fog_.density > 0 ? fog_.radius : 0});
 }
 
+Bounds Scene::lit_bounds() const {
+  Bounds all = bounds();
+  if (fog_.density > 0) {
+    all.add(bounds().center() - Vec3f(fog_.radius));
+    all.add(bounds().center() + Vec3f(fog_.radius));
+  }
+  return all;
+}
+
 std::optional<SurfacePoint> Scene::intersect(const Ray& ray) const {
   const auto hit = accelerator_->closest(ray);
   if (!hit) return std::nullopt;

@@ -94,6 +94,8 @@ class Scene {
   const Bounds& bounds() const { return geometry_.bounds(); }
   /// Whether it makes a difference when in the shutter a ray travels.
   bool moves() const { return moves_; }
+  /// Of all that light from infinity can meet: surfaces and fog.
+  Bounds lit_bounds() const;
   const std::vector<Notice>& notices() const { return notices_; }
   const std::string& accelerator_name() const { return accelerator_name_; }
   /// What light depends on beside a camera, as names and values: the scene's hash, what was chosen of it, its

@@ -143,13 +143,14 @@ std::optional<Interaction> intersect(const Scene& scene, const Segment& segment,
 }
 
 /// Fraction of light that a surface lets pass straight on; if it is bent there, what passes bent.
-Rgb passing(const Scene& scene, const Interaction& at, const Vec3f& direction, bool& is_bent) {
+Rgb passing(const Scene& scene, const Interaction& at, const Vec3f& direction, Passage& passage) {
   const Shading surface = shade(scene, at, -direction);
   const Rgb straight = surface.straight();
   if (!is_black(straight)) return straight;
   const SpecularRays rays = surface.specular().rays;
   if (rays.alpha > narrow_alpha) return {0, 0, 0};
-  is_bent = true;
+  passage.is_bent = true;
+  passage.is_sharp = passage.is_sharp && rays.alpha == 0;
   return rays.transmitted;
 }
 
@@ -213,7 +214,7 @@ Passage transmittance(const Scene& scene, const Segment& segment) {
       }
     }
     passage.fraction *= transmittance(scene.volumes().stretch(media, ray, t, point.t), scale);
-    passage.fraction *= passing(scene, at, direction, passage.is_bent);
+    passage.fraction *= passing(scene, at, direction, passage);
     if (is_black(passage.fraction)) return {};
     ++passage.surfaces;
     media = at.beyond;

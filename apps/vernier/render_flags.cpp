@@ -62,6 +62,13 @@ void add_integrator_flags(CLI::App& command, RenderFlags& flags) {
       ->capture_default_str();
   command.add_option("--show", flags.show, "raycast: what to show; 'help' lists it")->type_name("NAME");
   add_max_depth_flag(command, flags);
+  command
+      .add_option("--caustics", flags.caustics,
+                  "path: what lamps cast by mirrors and bending glass, from paths that begin at them: auto "
+                  "(where there is some), on, off (docs/caustics.md)")
+      ->check(CLI::IsMember({"auto", "on", "off"}))
+      ->type_name("auto|on|off")
+      ->capture_default_str();
   command.add_option("--ambient", options.ambient, "whitted: radiance that reaches everything")
       ->transform(real_number(0, 1e30))
       ->type_name("L")

@@ -32,6 +32,7 @@ struct RenderFlags {
   std::string time, error, size, crop;
   std::string filter = "box";
   std::string adaptive = "on";
+  std::string caustics = "auto";
   uint64_t seed = 0;
   unsigned threads = 0;
 

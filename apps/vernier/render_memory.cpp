@@ -13,7 +13,7 @@ namespace {
 constexpr size_t color = 3 * sizeof(float);  // an Image of three channels
 
 size_t session_bytes(const MemoryUse& use) {
-  return RenderState::bytes_per_pixel(use.adaptive, use.alpha, use.light_parts) +
+  return RenderState::bytes_per_pixel(use.adaptive, use.alpha, use.light_parts, use.splats) +
          (use.background_picture ? color : 0);
 }
 

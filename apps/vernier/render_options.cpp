@@ -21,6 +21,7 @@
 #include "core/base/names.h"
 #include "core/image/image_io.h"
 #include "integrators/render/pixel_filter.h"
+#include "integrators/render/settings_identity.h"
 #include "scene/accel/accelerator.h"
 #include "vernier/error.h"
 
@@ -63,6 +64,7 @@ RenderSettings make_settings(const RenderFlags& flags) {
     if (flags.integrator != "raycast") throw Error(ErrorKind::usage, "--show needs --integrator raycast");
     options.integrator_options.show = flags.show;
   }
+  options.integrator_options.caustics = parse_caustics(flags.caustics);
   make_integrator(options.integrator, options.integrator_options);  // or it throws
   options.filter = parse_filter(flags.filter);
   options.row_exposure = row_exposure_of(flags.run.shutter);
@@ -160,6 +162,7 @@ MemoryUse memory_use(const RenderRequest& request) {
   use.display = has_display_output(flags);
   use.report = !flags.report.empty();
   use.half = flags.exr.half;
+  use.splats = flags.integrator == "light" || (flags.integrator == "path" && flags.caustics != "off");
   return use;
 }
 

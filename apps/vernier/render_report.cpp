@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "apps/vernier/machine.h"
 #include "apps/vernier/messages.h"
@@ -27,6 +28,12 @@ double rate(uint64_t count, double seconds) { return seconds > 0 ? double(count)
 /// A figure that JSON can hold: null while it is not known.
 Json known(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+/// Of both halves; 0 where all light comes by camera samples.
+uint64_t light_paths(const RenderResult& result) {
+  const auto& halves = result.film.light_paths();
+  return std::accumulate(halves.begin(), halves.end(), uint64_t{0});
+}
+
 Json picture_json(const RenderReport& report, const RenderFlags& flags, const RenderResult& result) {
   Json picture = {{"width", report.settings.width},
                   {"height", report.settings.height},
@@ -37,6 +44,7 @@ Json picture_json(const RenderReport& report, const RenderFlags& flags, const Re
                   {"background", background_text(report.settings.background)},
                   {"seed", flags.seed},
                   {"max_depth", flags.integrator_options.max_depth},
+                  {"light_paths", light_paths(result)},
                   {"samples", result.samples},
                   {"samples_per_pixel", samples_per_pixel(result)},
                   {"asked", asked_json(report.settings)},

@@ -29,6 +29,14 @@ void warn_of_bad_samples(const RenderResult& result, const RenderFlags& flags, N
                        result.bad_samples, result.samples, replay)});
 }
 
+void warn_of_bad_light_paths(const RenderResult& result, NoticeLog& log) {
+  if (result.bad_light_paths == 0) return;
+  log.add({Notice::Severity::warning,
+           {},
+           fmt::format("{} light paths were not finite or were negative, and were left out",
+                       result.bad_light_paths)});
+}
+
 /// Says so when what the camera sees of the scene comes out all but black, and what helps.
 void warn_if_black(double mean, const RenderFlags& flags, const RenderReport& report, NoticeLog& log) {
   constexpr double black = 0.005, grey = 0.18;
@@ -49,6 +57,7 @@ void warn_if_black(double mean, const RenderFlags& flags, const RenderReport& re
 void warn_of_result(const RenderResult& result, const Scene& scene, const RenderFlags& flags,
                     const RenderReport& report, NoticeLog& log) {
   warn_of_bad_samples(result, flags, log);
+  warn_of_bad_light_paths(result, log);
   warn_of_missing_light(result, flags.integrator_options.max_depth, log);
   if (!shows_light(flags)) return;
   const RenderSettings& settings = report.settings;

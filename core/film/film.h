@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -20,16 +21,20 @@ struct FilmSample {
 
 /// Sums of samples per pixel, in double, kept in two halves whose samples are independent of each other:
 /// their difference measures the error of their mean. One thread at a time may add to a given pixel.
+///
+/// Light may also come to a pixel by splats, from paths that begin at lights and end in any pixel: each half
+/// has light paths of its own, and the mean over them is added to that of the half's samples.
 class Film {
  public:
   static constexpr int halves = 2;
 
-  /// Without alpha, transparency is not kept.
-  Film(int width, int height, bool has_alpha = false)
+  /// Without alpha, transparency is not kept; without splats, no light path may bring any.
+  Film(int width, int height, bool has_alpha = false, bool has_splats = false)
       : width_(width),
         height_(height),
         cells_(size_t(width) * height * halves),
-        transparency_(has_alpha ? cells_.size() : 0) {}
+        transparency_(has_alpha ? cells_.size() : 0),
+        splats_(has_splats ? cells_.size() : 0) {}
 
   /// A sample that is not finite or is negative in any channel is not stored; returns false for it.
   [[nodiscard]] bool add(int x, int y, int half, const FilmSample& sample) {
@@ -54,6 +59,18 @@ class Film {
     return add(x, y, half, FilmSample{radiance});
   }
 
+  /// All that one light path brings to a pixel, finite and not negative, of a film with splats.
+  void splat(int x, int y, int half, const Rgb& radiance) {
+    Cell& cell = splats_[index(x, y, half)];
+    const Vec3d value(radiance);
+    cell.sum += value;
+    cell.sum_of_squares += value * value;
+    cell.largest = std::max(cell.largest, max_component(radiance));
+    ++cell.count;
+  }
+  /// So many more light paths were followed, whatever they brought.
+  void count_light_paths(int half, uint64_t paths) { light_paths_[size_t(half)] += paths; }
+
   /// Adds the samples of another film of the same size, each half to its own. The halves stay independent
   /// when the other film's samples are independent of these.
   void merge(const Film& other);
@@ -61,17 +78,21 @@ class Film {
   int width() const { return width_; }
   int height() const { return height_; }
   bool has_alpha() const { return !transparency_.empty(); }
+  bool has_splats() const { return !splats_.empty(); }
+  const std::array<uint64_t, halves>& light_paths() const { return light_paths_; }
 
   uint32_t samples(int x, int y, int half) const { return cells_[index(x, y, half)].count; }
   uint32_t samples(int x, int y) const { return samples(x, y, 0) + samples(x, y, 1); }
 
-  /// Mean of one half's samples; zero where there are none.
+  /// Mean of one half's samples, zero where there are none, and what its splats add.
   Vec3d half_mean(int x, int y, int half) const;
+  /// What they add.
+  Vec3d splat_mean(int x, int y, int half) const;
   /// Variance that the mean of one half would have if its samples were independent: an upper bound in
   /// practice, since they are stratified. Zero with fewer than two samples.
   Vec3d half_mean_variance(int x, int y, int half) const;
   /// Variance of a single sample of the pixel, from the spread of the samples within each half. Zero while
-  /// neither half has two samples.
+  /// neither half has two samples. Splats count with the light paths that there are for a sample.
   Vec3d sample_variance(int x, int y) const;
 
   /// The pixel: the mean of the two halves' means, so that its weights do not depend on the samples even when
@@ -86,7 +107,8 @@ class Film {
   }
   /// One channel: 1 where it is, else 0.
   Image coverage() const;
-  /// Part of the sum of all samples that the largest one makes up, in [0, 1]; the brightest channel counts.
+  /// Part of the sum of all samples, or of what splats add to it, that the largest one makes up, in [0, 1];
+  /// the brightest channel counts.
   double largest_share(int x, int y) const;
 
   /// All pixels: three channels, linear Rec.709; zero where there are no samples.
@@ -99,7 +121,11 @@ class Film {
   /// The rest of it; empty without alpha.
   std::span<const std::byte> alpha_bytes() const { return std::as_bytes(std::span(transparency_)); }
   std::span<std::byte> alpha_bytes() { return std::as_writable_bytes(std::span(transparency_)); }
+  /// What splats have brought; empty without.
+  std::span<const std::byte> splat_bytes() const { return std::as_bytes(std::span(splats_)); }
+  std::span<std::byte> splat_bytes() { return std::as_writable_bytes(std::span(splats_)); }
   static constexpr size_t bytes_per_pixel() { return halves * sizeof(Cell); }
+  static constexpr size_t splat_bytes_per_pixel() { return halves * sizeof(Cell); }
   static constexpr size_t alpha_bytes_per_pixel() { return halves * sizeof(double); }
   /// Whether add() can have led to these sums; false only of damaged bytes.
   bool is_plausible() const;
@@ -112,13 +138,17 @@ class Film {
     uint32_t met_surface : 1 = 0;
     float largest = 0;
   };
-  /// Sum of the squared distances of the samples to their mean.
-  static Vec3d spread(const Cell& cell);
+  /// Sum of the squared distances of so many samples to their mean.
+  static Vec3d spread(const Cell& cell, double count);
+  static bool is_plausible(const Cell& cell);
+  Vec3d splat_mean_variance(int x, int y, int half) const;
   size_t index(int x, int y, int half) const { return (size_t(y) * width_ + x) * halves + half; }
 
   int width_, height_;
   std::vector<Cell> cells_;
   std::vector<double> transparency_;  ///< sums, by cell; empty without alpha
+  std::vector<Cell> splats_;          ///< by cell, of the light paths that have brought any; empty without
+  std::array<uint64_t, halves> light_paths_{};
 };
 
 }  // namespace vernier

@@ -14,11 +14,16 @@ namespace vernier {
 /// Which technique finds light: both weighted against each other, or one alone, for study and for tests.
 enum class LightSampling { mis, light, bsdf };
 
+/// Whether paths from lamps bring what reaches a surface by mirrors and through glass that bends it, which no
+/// path from the camera finds. Automatic: where a lamp of the scene shines on such surfaces.
+enum class Caustics { automatic, on, off };
+
 /// What can be said of any integrator; each reads what it knows.
 struct IntegratorOptions {
   int max_depth = 16;                                 ///< path vertices after the camera
   LightSampling light_sampling = LightSampling::mis;  ///< path
-  bool russian_roulette = true;                       ///< path
+  bool russian_roulette = true;                       ///< path, light
+  Caustics caustics = Caustics::automatic;            ///< path
   std::string show = "normal";                        ///< raycast: what to show
   float ambient = 0.05f;                              ///< whitted: constant ambient radiance
   float cutoff = 1e-3f;  ///< whitted: a recursive ray that would contribute less than this is not traced

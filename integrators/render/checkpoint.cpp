@@ -13,6 +13,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/fingerprint.h"
 #include "integrators/render/checkpoint_file.h"
+#include "integrators/render/light_pass.h"
 #include "vernier/error.h"
 
 namespace vernier {
@@ -47,7 +48,10 @@ void for_each_array(State& state, Plan& plan_counts, const Visit& visit) {
   visit("parts", bytes_of(state.parts));
   visit("looks", bytes_of(state.so_far.convergence));
   visit("bad samples", bytes_of(state.so_far.bad_sample_examples));
+  visit("splats", state.so_far.film.splat_bytes());
   for (auto& part : state.so_far.light) visit(part.layer.c_str(), part.film.bytes());
+  if (state.so_far.film.has_splats())
+    for (auto& part : state.so_far.light) visit((part.layer + " splats").c_str(), part.film.splat_bytes());
 }
 
 Json header_of(const RenderIdentity& identity, const RenderState& state) {
@@ -59,6 +63,9 @@ Json header_of(const RenderIdentity& identity, const RenderState& state) {
               {"adaptive", !state.guides[0].bytes().empty()},
               {"has_alpha", so_far.film.has_alpha()},
               {"light_layers", Json::array()},
+              {"has_splats", so_far.film.has_splats()},
+              {"light_batches", state.light_batches},
+              {"bad_light_paths", so_far.bad_light_paths},
               {"done", state.done},
               {"guiding", state.drawn.guiding},
               {"looked_at", state.looked_at},
@@ -98,6 +105,7 @@ std::shared_ptr<RenderState> allocate_state(const CheckpointReader& reader, cons
   if (width == 0 || height == 0) reader.damaged("its picture has no pixels");
   const bool adaptive = header.at("adaptive").get<bool>();
   const bool has_alpha = header.at("has_alpha").get<bool>();
+  const bool has_splats = header.at("has_splats").get<bool>();
   const auto light_layers = header.at("light_layers").get<std::vector<std::string>>();
   const Json& pass_header = header.at("pass");
   const uint32_t done = uint32_t(whole_number(reader, header.at("done"), "done", RenderState::most_samples));
@@ -123,8 +131,11 @@ std::shared_ptr<RenderState> allocate_state(const CheckpointReader& reader, cons
                                uneven ? pixels * Film::halves * sizeof(uint16_t) : 0,
                                pass.size > 0 ? tiles * sizeof(uint32_t) : 0,
                                bytes(8) / sizeof(RenderResult::Look) * sizeof(RenderResult::Look),
-                               bytes(9) / sizeof(BadSample) * sizeof(BadSample)};
+                               bytes(9) / sizeof(BadSample) * sizeof(BadSample),
+                               has_splats ? pixels * Film::splat_bytes_per_pixel() : 0};
   expected.resize(expected.size() + light_layers.size(), pixels * Film::bytes_per_pixel());
+  if (has_splats)
+    expected.resize(expected.size() + light_layers.size(), pixels * Film::splat_bytes_per_pixel());
   uintmax_t total = 0;
   for (size_t i = 0; i < expected.size(); ++i) {
     if (bytes(i) != expected[i])
@@ -135,7 +146,8 @@ std::shared_ptr<RenderState> allocate_state(const CheckpointReader& reader, cons
   if (arrays.size() != expected.size() || total != reader.left())
     reader.damaged(fmt::format("{} bytes follow its header, expected {}", reader.left(), total));
 
-  auto state = std::make_shared<RenderState>(int(width), int(height), adaptive, has_alpha, light_layers);
+  auto state =
+      std::make_shared<RenderState>(int(width), int(height), adaptive, has_alpha, light_layers, has_splats);
   state->done = done;
   for (size_t half = 0; half < Film::halves; ++half)
     state->drawn.guiding[half] =
@@ -146,6 +158,16 @@ std::shared_ptr<RenderState> allocate_state(const CheckpointReader& reader, cons
   state->so_far.convergence.resize(bytes(8) / sizeof(RenderResult::Look));
   state->so_far.bad_sample_examples.resize(bytes(9) / sizeof(BadSample));
   return state;
+}
+
+/// Of the header, and which films have how many.
+void read_light_paths(const CheckpointReader& reader, const Json& header, RenderState& state) {
+  const bool has_splats = state.so_far.film.has_splats();
+  state.light_batches = whole_number(reader, header.at("light_batches"), "light_batches",
+                                     has_splats ? LightPass::most_batches : 0);
+  const uint64_t paths = state.light_batches * LightPass::batch_size;
+  state.so_far.bad_light_paths = whole_number(reader, header.at("bad_light_paths"), "bad_light_paths", paths);
+  LightPass::count_paths(state.so_far, 0, state.light_batches);
 }
 
 /// Totals of the header.
@@ -169,6 +191,7 @@ void read_state(CheckpointReader& reader, const Json& header, Checkpoint& checkp
   checkpoint.state = allocate_state(reader, header, pass);
   RenderState& state = *checkpoint.state;
   read_totals(reader, header, state.so_far);
+  read_light_paths(reader, header, state);
   const Json& arrays = header.at("arrays");
   size_t i = 0;
   for_each_array(state, pass.counts, [&](const char* name, std::span<std::byte> array) {

@@ -50,7 +50,8 @@ void Merged::add(const std::string& path) {
   }
   require_same_render(path, checkpoint.identity, identity_);
   if (more.film.width() != result_->film.width() || more.film.height() != result_->film.height() ||
-      more.film.has_alpha() != result_->film.has_alpha() || more.light.size() != result_->light.size())
+      more.film.has_alpha() != result_->film.has_alpha() ||
+      more.film.has_splats() != result_->film.has_splats() || more.light.size() != result_->light.size())
     throw Error(ErrorKind::input, path, {}, "is damaged: its picture is not of the size that it says");
   result_->film.merge(more.film);
   for (size_t i = 0; i < more.light.size(); ++i) result_->light[i].film.merge(more.light[i].film);
@@ -59,11 +60,12 @@ void Merged::add(const std::string& path) {
   result_->samples += more.samples;
   result_->seconds += more.seconds;
   result_->bad_samples += more.bad_samples;
+  result_->bad_light_paths += more.bad_light_paths;
 }
 
 RenderResult& Merged::result() {
   result_->error = estimate_error(result_->film);
-  result_->missing = estimate_missing(light_);
+  result_->missing = estimate_missing(light_, result_->film);
   return *result_;
 }
 

@@ -44,7 +44,13 @@ double samples_per_pixel(const RenderResult& result) {
 }
 
 RenderStatus status_of(const RenderResult& r) {
-  return {r.seconds, samples_per_pixel(r), r.samples, r.rays, r.error, r.missing, r.bad_samples};
+  return {r.seconds,
+          samples_per_pixel(r),
+          r.samples,
+          r.rays,
+          r.error,
+          r.missing,
+          r.bad_samples + r.bad_light_paths};
 }
 
 Metadata result_metadata(const RenderResult& result) {

@@ -49,6 +49,30 @@ float FilterSampler::invert(float u) const {
   return float((cell + (double(u) - *lower) / (*upper - *lower)) / cells);
 }
 
+float FilterSampler::density(float offset) const {
+  const float part = (offset - 0.5f) / width_ + 0.5f;
+  if (!(part >= 0 && part < 1)) return 0;
+  if (integrals_.empty()) return 1 / width_;
+  const auto cell = size_t(part * float(cells));
+  return float((integrals_[cell + 1] - integrals_[cell]) * double(cells)) / width_;
+}
+
+FilterSampler::Share FilterSampler::share(float position, float u) const {
+  const float reach = (width_ - 1) / 2;
+  const int first = int(std::floor(position - reach)) - 1, last = int(std::floor(position + reach)) + 1;
+  float total = 0;
+  for (int pixel = first; pixel <= last; ++pixel) total += density(position - float(pixel));
+  float left = u * total;
+  Share share{first, 0};
+  for (int pixel = first; pixel <= last; ++pixel) {
+    const float own = density(position - float(pixel));
+    if (own > 0) share = {pixel, total};
+    left -= own;
+    if (left < 0) break;
+  }
+  return share;
+}
+
 const std::vector<FilterEntry>& filters() {
   static const std::vector<FilterEntry> table{
       {"box", PixelFilter::Kind::box, 1, "the plain mean over the pixel"},

@@ -23,7 +23,18 @@ class FilterSampler {
     return {place(invert(u.x)), place(invert(u.y))};
   }
 
+  /// The pixel of a row or column for light found at a position along it, which is measured in pixels.
+  struct Share {
+    int pixel;
+    float weight;  ///< by which the light counts there; 0: no pixel's samples reach the position
+  };
+  /// One of the pixels whose samples reach it, in proportion to their density: in the mean each pixel gets
+  /// the light with its filter's weight, and no two get the same light.
+  Share share(float position, float u) const;
+
  private:
+  /// Density of sample() in one coordinate, at an offset from the pixel's corner.
+  float density(float offset) const;
   float place(float part) const { return 0.5f + width_ * (part - 0.5f); }
   /// Which part of the width has the weight `u` before it.
   float invert(float u) const;

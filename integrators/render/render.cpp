@@ -9,6 +9,7 @@
 #include "integrators/render/backdrop.h"
 #include "integrators/render/camera_sample.h"
 #include "integrators/render/error_goal.h"
+#include "integrators/render/light_pass.h"
 #include "integrators/render/observer_thread.h"
 #include "integrators/render/render_state.h"
 #include "scene/scene.h"
@@ -40,11 +41,14 @@ class Renderer {
         options_(job.settings),
         backdrop_(job.backdrop),
         sorter_(job.sorter.is_empty() ? nullptr : &job.sorter),
+        has_caustics_(job.light_paths && job.light_paths->kind() == LightPathKind::caustics),
         crop_(rendered_part(job.settings)),
         stop_(stop),
         hooks_(std::move(hooks)),
         state_(state),
-        seconds_before_(state_.so_far.seconds) {}
+        seconds_before_(state_.so_far.seconds) {
+    if (job.light_paths) light_pass_.emplace(*job.light_paths, sorter_);
+  }
 
   void run() {
     save_.next = seconds() + save_.interval;
@@ -101,7 +105,12 @@ class Renderer {
     if (options_.limits.spp <= 0) return state_.pass.size();
     return std::min(state_.pass.size(), uint32_t(std::max(0, options_.limits.spp - int(state_.done))));
   }
+  /// Batches of light paths that go with the samples of complete passes and that part of the next.
+  uint64_t light_batches(uint32_t part) const {
+    return light_pass_ ? LightPass::batches(options_.width, options_.height, state_.done + part) : 0;
+  }
   bool is_pass_complete() const {
+    if (state_.light_batches < light_batches(state_.pass.size())) return false;
     return std::all_of(state_.parts.begin(), state_.parts.end(),
                        [this](uint32_t part) { return part == state_.pass.size(); });
   }
@@ -113,7 +122,7 @@ class Renderer {
     state_.parts.clear();
   }
   bool has_all_samples() const {
-    if (options_.limits.spp <= 0) return false;
+    if (options_.limits.spp <= 0 || state_.light_batches < light_batches(wanted_part())) return false;
     return std::all_of(state_.parts.begin(), state_.parts.end(),
                        [wanted = wanted_part()](uint32_t part) { return part >= wanted; }) &&
            state_.done + wanted_part() >= uint32_t(options_.limits.spp);
@@ -148,7 +157,7 @@ class Renderer {
     result().error = looked ? looks.back().error : estimate_error(result().film);
     if (!looked && state_.done >= pilot)
       result().convergence.push_back({seconds(), samples_per_pixel(), result().error});
-    result().missing = estimate_missing(state_.light);
+    result().missing = estimate_missing(state_.light, result().film);
     result().seconds = seconds();
   }
 
@@ -164,7 +173,18 @@ class Renderer {
         if (part < wanted) render_tile(int(tile), part, wanted);
         part = std::max(part, wanted);
       });
+      trace_light(light_batches(wanted));
     } while (is_pause_due() && !stop_);
+  }
+
+  /// Light paths of the samples that there are now.
+  void trace_light(uint64_t wanted) {
+    while (state_.light_batches < wanted && !stop_ && !(state_.done > 0 && out_of_time()) &&
+           !is_pause_due()) {
+      light_pass_->advance(state_, wanted);
+      save_.is_news = preview_.is_news = true;
+      if (observer_.is_due(seconds())) observer_.post(progress());
+    }
   }
 
   /// From `part` of the pass to `wanted`.
@@ -222,7 +242,7 @@ class Renderer {
     const uint32_t index = draw_index(planned, guides);
     const int full_x = crop_.x + x, full_y = crop_.y + y;
     CameraSample sample = camera_samples_.get({full_x, full_y, half, index});
-    const SampleContext context{spread(x, y, half), sorter_};
+    const SampleContext context{spread(x, y, half), sorter_, has_caustics_};
     const Estimate estimate = integrator_.estimate(scene_, sample.ray, sample.sampler, context);
     ++totals.samples;
     totals.rays += estimate.rays;
@@ -304,6 +324,8 @@ class Renderer {
   const RenderSettings& options_;
   const Backdrop& backdrop_;
   const LightSorter* sorter_;  ///< null: no light is kept apart
+  const bool has_caustics_;
+  std::optional<LightPass> light_pass_;
   const Crop crop_;
   const std::atomic<bool>& stop_;
   const RenderHooks hooks_;
@@ -332,8 +354,11 @@ RenderResult render(const Scene& scene, const Camera& camera, const Integrator& 
   const Crop part = rendered_part(settings);
   const Backdrop backdrop(settings);
   const LightSorter sorter(settings.light_split, scene);
-  RenderState state(part.width, part.height, settings.adaptive, backdrop.is_transparent(), sorter.layers());
-  render({scene, camera, integrator, settings, backdrop, sorter}, state, stop, std::move(hooks));
+  const auto light_paths = light_paths_of(scene, camera, integrator, settings, sorter);
+  RenderState state(part.width, part.height, settings.adaptive, backdrop.is_transparent(), sorter.layers(),
+                    light_paths.has_value());
+  render({scene, camera, integrator, settings, backdrop, sorter, light_paths ? &*light_paths : nullptr},
+         state, stop, std::move(hooks));
   return std::move(state.so_far);
 }
 

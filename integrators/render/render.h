@@ -19,6 +19,7 @@ namespace vernier {
 
 class Backdrop;
 class Camera;
+class LightPaths;
 class Scene;
 struct RenderState;
 
@@ -55,6 +56,7 @@ struct RenderResult {
   RayCounts rays;
   MissingEstimate missing;                     ///< known bias, which `error` does not contain
   uint64_t bad_samples = 0;                    ///< rejected by the film
+  uint64_t bad_light_paths = 0;                ///< of which nothing was kept, for the same reasons
   std::vector<BadSample> bad_sample_examples;  ///< the first few by column, row, half and index
 };
 
@@ -86,6 +88,7 @@ struct RenderJob {
   const RenderSettings& settings;
   const Backdrop& backdrop;
   const LightSorter& sorter;
+  const LightPaths* light_paths = nullptr;  ///< whose splats belong to the picture; null: none
 };
 
 /// Renders tiles of the picture in passes on all threads, from where `state` is, of a render with the same

@@ -27,6 +27,21 @@ uint64_t accepted_samples(const Film& film) {
 
 }  // namespace
 
+MissingEstimate estimate_missing(std::vector<TileLight> tiles, const Film& film) {
+  constexpr int size = RenderState::tile_size;
+  const int columns = (film.width() + size - 1) / size;
+  for (size_t i = 0; film.has_splats() && i < tiles.size(); ++i) {
+    const int x0 = int(i) % columns * size, y0 = int(i) / columns * size;
+    const int x1 = std::min(x0 + size, film.width()), y1 = std::min(y0 + size, film.height());
+    Vec3d sum(0, 0, 0);
+    for (int y = y0; y < y1; ++y)
+      for (int x = x0; x < x1; ++x)
+        for (int half = 0; half < Film::halves; ++half) sum += film.splat_mean(x, y, half) / Film::halves;
+    tiles[i].found += Rgb(Vec3f(sum * (double(tiles[i].samples) / ((x1 - x0) * (y1 - y0)))));
+  }
+  return estimate_missing(tiles);
+}
+
 const char* implausible_part(const RenderState& state) {
   const RenderResult& so_far = state.so_far;
   const auto all = [](const auto& values, const auto& holds) {

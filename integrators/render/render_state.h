@@ -24,12 +24,13 @@ struct RenderState {
 
   /// Of a picture, or crop, of which nothing is rendered yet.
   RenderState(int width, int height, bool adaptive, bool has_alpha = false,
-              std::span<const std::string> light_layers = {})
-      : so_far(Film(width, height, has_alpha)),
+              std::span<const std::string> light_layers = {}, bool has_splats = false)
+      : so_far(Film(width, height, has_alpha, has_splats)),
         guides{SampleGuide(adaptive ? width : 0, height), SampleGuide(adaptive ? width : 0, height)},
         drawn{{}, std::vector<uint32_t>(adaptive ? size_t(width) * height * Film::halves : 0)},
         light(size_t(tile_count())) {
-    for (const std::string& layer : light_layers) so_far.light.push_back({layer, Film(width, height)});
+    for (const std::string& layer : light_layers)
+      so_far.light.push_back({layer, Film(width, height, false, has_splats)});
   }
 
   /// Of a picture, or crop, of this size.
@@ -39,20 +40,23 @@ struct RenderState {
   int tile_columns() const { return (so_far.film.width() + tile_size - 1) / tile_size; }
   int tile_count() const { return tile_count(so_far.film.width(), so_far.film.height()); }
 
-  static constexpr size_t bytes_per_pixel(bool adaptive, bool has_alpha, size_t light_layers = 0) {
+  static constexpr size_t bytes_per_pixel(bool adaptive, bool has_alpha, size_t light_layers = 0,
+                                          bool has_splats = false) {
     // Guides, the plan, and which samples come next.
     const size_t guiding =
         Film::halves * (SampleGuide::bytes_per_pixel() + sizeof(uint16_t) + sizeof(uint32_t));
-    return (1 + light_layers) * Film::bytes_per_pixel() + (has_alpha ? Film::alpha_bytes_per_pixel() : 0) +
-           (adaptive ? guiding : 0);
+    const size_t splats = has_splats ? Film::splat_bytes_per_pixel() : 0;
+    return (1 + light_layers) * (Film::bytes_per_pixel() + splats) +
+           (has_alpha ? Film::alpha_bytes_per_pixel() : 0) + (adaptive ? guiding : 0);
   }
   /// Whether a render of a picture, or crop, of this size can go on from it.
   bool fits(int width, int height, bool adaptive, bool has_alpha,
-            std::span<const std::string> light_layers = {}) const {
+            std::span<const std::string> light_layers = {}, bool has_splats = false) const {
     return std::equal(so_far.light.begin(), so_far.light.end(), light_layers.begin(), light_layers.end(),
                       [](const LightFilm& part, const std::string& layer) { return part.layer == layer; }) &&
            so_far.film.width() == width && so_far.film.height() == height &&
-           so_far.film.has_alpha() == has_alpha && guides[0].bytes().empty() == !adaptive;
+           so_far.film.has_alpha() == has_alpha && so_far.film.has_splats() == has_splats &&
+           guides[0].bytes().empty() == !adaptive;
   }
 
   RenderResult so_far;                           ///< `reason` and `error` are not known yet
@@ -63,7 +67,11 @@ struct RenderState {
   uint32_t looked_at = 0;                        ///< `done` when the error was last looked at
   SamplePlan pass;                               ///< the one that is under way; of no samples: none is
   std::vector<uint32_t> parts;                   ///< how much of it each tile has done, in samples a pixel
+  uint64_t light_batches = 0;                    ///< of light paths (render/light_pass.h) that are done
 };
+
+/// Of tiles whose samples are spread evenly over their pixels, to which the splats of a film add light.
+MissingEstimate estimate_missing(std::vector<TileLight> tiles, const Film& film);
 
 /// The name of a part of a state, as checkpoints call it, whose values no render can have led to and which
 /// might be indexed out of bounds, never come to an end, or give undefined numbers; null where there is none.

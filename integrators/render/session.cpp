@@ -10,6 +10,7 @@
 #include "core/base/build.h"
 #include "core/base/names.h"
 #include "core/image/image_io.h"
+#include "integrators/light_paths.h"
 #include "integrators/render/backdrop.h"
 #include "integrators/render/checkpoint.h"
 #include "integrators/render/layers.h"
@@ -76,8 +77,9 @@ class RenderSession::State {
         camera(settings.camera, settings.width, settings.height),
         backdrop(settings),
         sorter(settings.light_split, *scene),
+        light_paths(light_paths_of(*scene, camera, *integrator, settings, sorter)),
         render(rendered_part(settings).width, rendered_part(settings).height, settings.adaptive,
-               backdrop.is_transparent(), sorter.layers()) {}
+               backdrop.is_transparent(), sorter.layers(), light_paths.has_value()) {}
 
   RenderIdentity identity() const {
     RenderIdentity identity{{"version", version()}};
@@ -95,6 +97,7 @@ class RenderSession::State {
   const Camera camera;
   const Backdrop backdrop;
   const LightSorter sorter;
+  const std::optional<LightPaths> light_paths;
   RenderState render;
   RenderHooks hooks;
   std::atomic<std::thread::id> user{};  ///< the thread in a call; none: std::thread::id()
@@ -162,8 +165,9 @@ StopReason RenderSession::run(const std::atomic<bool>& stop) {
   const Use use(state_->user);
   if (!use.is_outermost()) refuse("run() cannot be called by a callback of its own");
   State& s = *state_;
-  vernier::render({*s.scene, s.camera, *s.integrator, s.settings, s.backdrop, s.sorter}, s.render, stop,
-                  s.hooks);
+  const LightPaths* light_paths = s.light_paths ? &*s.light_paths : nullptr;
+  vernier::render({*s.scene, s.camera, *s.integrator, s.settings, s.backdrop, s.sorter, light_paths},
+                  s.render, stop, s.hooks);
   return s.render.so_far.reason;
 }
 
@@ -202,14 +206,15 @@ std::vector<Notice> RenderSession::load(const std::string& path) {
   require_same_render(path, checkpoint.identity, state_->identity());
   const Crop part = rendered_part(state_->settings);
   if (!checkpoint.state->fits(part.width, part.height, state_->settings.adaptive,
-                              state_->backdrop.is_transparent(), state_->sorter.layers()))
+                              state_->backdrop.is_transparent(), state_->sorter.layers(),
+                              state_->light_paths.has_value()))
     throw Error(ErrorKind::input, path, {},
                 "is damaged: what it holds is not of the size that it says; use another checkpoint or render "
                 "from the beginning");
   state_->render = std::move(*checkpoint.state);
   RenderResult& so_far = state_->render.so_far;
   so_far.error = estimate_error(so_far.film);
-  so_far.missing = estimate_missing(state_->render.light);
+  so_far.missing = estimate_missing(state_->render.light, so_far.film);
   return notices;
 }
 

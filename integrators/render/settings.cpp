@@ -23,6 +23,9 @@ constexpr int format_version = 2;
 constexpr std::array<std::pair<std::string_view, LightSampling>, 3> light_samplings{
     {{"mis", LightSampling::mis}, {"light", LightSampling::light}, {"bsdf", LightSampling::bsdf}}};
 
+constexpr std::array<std::pair<std::string_view, Caustics>, 3> caustics_names{
+    {{"auto", Caustics::automatic}, {"on", Caustics::on}, {"off", Caustics::off}}};
+
 using CameraKind = CameraDescription::Kind;
 constexpr std::array<std::pair<std::string_view, CameraKind>, 3> camera_kinds{
     {{"perspective", CameraKind::perspective},
@@ -48,6 +51,7 @@ void for_each_setting(Settings& s, const Visit& visit) {
   visit("max-depth", options.max_depth);
   visit("light-sampling", options.light_sampling);
   visit("roulette", options.russian_roulette);
+  visit("caustics", options.caustics);
   visit("show", options.show);
   visit("ambient", options.ambient);
   visit("cutoff", options.cutoff);
@@ -66,6 +70,7 @@ Json name_of(const Names& names, Value value) {
   return nullptr;
 }
 Json encode(LightSampling value) { return name_of(light_samplings, value); }
+Json encode(Caustics value) { return name_of(caustics_names, value); }
 Json encode(const PixelFilter& filter) { return filter_text(filter); }
 Json encode(const Crop& crop) {
   return crop.width > 0 ? Json{crop.x, crop.y, crop.width, crop.height} : Json(nullptr);
@@ -116,6 +121,7 @@ void decode_name(const Json& json, const char* kind, const Names& names, Value& 
 void decode(const Json& json, LightSampling& value) {
   decode_name(json, "light-sampling", light_samplings, value);
 }
+void decode(const Json& json, Caustics& value) { decode_name(json, "caustics", caustics_names, value); }
 void decode(const Json& json, PixelFilter& filter) { filter = parse_filter(json.get<std::string>()); }
 void decode(const Json& json, Crop& crop) {
   crop = {};
@@ -162,6 +168,7 @@ std::string text(bool value) { return value ? "on" : "off"; }
 std::string text(const std::string& value) { return value; }
 std::string text(const PixelFilter& filter) { return filter_text(filter); }
 std::string text(LightSampling value) { return encode(value).get<std::string>(); }
+std::string text(Caustics value) { return encode(value).get<std::string>(); }
 std::string text(const CameraDescription& camera) {
   Json json = encode(camera);
   json.erase("name");
@@ -196,6 +203,12 @@ std::string background_text(const Background& background) {
       return background.file;
   }
   return "";
+}
+
+Caustics parse_caustics(std::string_view name) {
+  Caustics value{};
+  decode(Json(name), value);
+  return value;
 }
 
 std::string crop_text(const Crop& crop) {

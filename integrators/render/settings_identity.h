@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,9 @@ RenderIdentity identity_of(const RenderSettings& settings);
 
 /// "surroundings", "transparent", "0.5,0.5,0.5" or a file.
 std::string background_text(const Background& background);
+
+/// "auto", "on" or "off". Throws Error(usage).
+Caustics parse_caustics(std::string_view name);
 
 /// "640x360+10+20", as --crop takes it.
 std::string crop_text(const Crop& crop);

@@ -5,7 +5,7 @@
 
 #include "core/base/names.h"
 #include "core/base/parallel.h"
-#include "integrators/integrator.h"
+#include "integrators/light_paths.h"
 #include "integrators/render/first_hit.h"
 #include "scene/camera.h"
 #include "scene/segment.h"
@@ -17,6 +17,7 @@ namespace {
 constexpr int grid = 24;              // pixels a side
 constexpr int samples_per_pixel = 8;  // a power of two, for stratification
 constexpr uint64_t seed = 0;
+constexpr uint64_t light_paths_per_pixel = 16;  // the same
 /// Of the radiance that a white environment of radiance 1 would make visible.
 constexpr float faint = 0.01f;
 
@@ -38,10 +39,30 @@ void look(const Scene& scene, const Integrator& integrator, const Ray& ray, Samp
   pixel.albedo += luminance(shade(scene, *hit, -ray.direction).albedo());
 }
 
+/// What light paths bring, if the integrator follows any, in the mean over each pixel of the grid.
+std::vector<Rgb> light_of_paths(const Scene& scene, const Camera& camera, const Integrator& integrator,
+                                int width, int height) {
+  RenderSettings settings;
+  settings.width = width;
+  settings.height = height;
+  const LightSorter sorter({}, scene);
+  const auto paths = light_paths_of(scene, camera, integrator, settings, sorter);
+  std::vector<Rgb> pixels(size_t(grid) * grid, Rgb(0, 0, 0));
+  if (!paths) return pixels;
+  constexpr uint64_t count = light_paths_per_pixel * grid * grid;
+  Caught caught;
+  for (uint64_t i = 0; i < count; ++i) paths->trace({i, 0}, caught);
+  const float share = float(grid) / float(width) * float(grid) / float(height) / float(count);
+  for (const auto& [x, y, radiance] : caught.splats)
+    pixels[size_t(y * grid / height) * grid + size_t(x * grid / width)] += radiance * share;
+  return pixels;
+}
+
 }  // namespace
 
 VisibleLight visible_light(const Scene& scene, const Camera& camera, int width, int height) {
   const auto integrator = find_by_name(integrators(), "integrator", "path").make(IntegratorOptions{});
+  const std::vector<Rgb> brought = light_of_paths(scene, camera, *integrator, width, height);
   std::vector<PixelLight> pixels(size_t(grid) * grid);
   parallel_for(pixels.size(), [&](size_t i) {
     for (uint32_t sample = 0; sample < samples_per_pixel; ++sample) {
@@ -50,6 +71,7 @@ VisibleLight visible_light(const Scene& scene, const Camera& camera, int width, 
       const Vec2f at = (Vec2f(float(column), float(row)) + sampler.next2()) / float(grid);
       look(scene, *integrator, camera.ray({at.x * float(width), at.y * float(height)}), sampler, pixels[i]);
     }
+    pixels[i].scattered += luminance(brought[i]) * float(pixels[i].covered);
   });
   int covered = 0, lit = 0, shown = 0;
   for (const PixelLight& pixel : pixels) {

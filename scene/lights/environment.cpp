@@ -2,6 +2,7 @@
 #include "scene/lights/environment.h"
 
 #include "core/base/parallel.h"
+#include "scene/lights/infinite_disk.h"
 
 namespace vernier {
 
@@ -78,6 +79,17 @@ std::optional<LightSample> EnvironmentLight::sample(const SurfacePoint& from, co
   if (!(pdf > 0) || !(sin_theta > 0)) return std::nullopt;
   const Vec3f wi = direction(uv);
   return LightSample{wi, lookup(uv), pdf / (2 * pi * pi * sin_theta), false, from.spawn(wi), {}};
+}
+
+std::optional<LightRay> EnvironmentLight::emit(const Bounds& scene, const Vec2d& place,
+                                               const Vec2f& direction, float time) const {
+  if (distribution_.empty()) return std::nullopt;
+  float pdf;
+  const Vec2f uv = distribution_.sample(place, pdf);
+  const float sin_theta = std::sin(uv.y * pi);
+  if (!(pdf > 0) || !(sin_theta > 0)) return std::nullopt;
+  return emit_from_infinity(scene, -this->direction(uv), lookup(uv) * (2 * pi * pi * sin_theta / pdf),
+                            direction, time);
 }
 
 LightEval EnvironmentLight::eval(const SurfacePoint& /*from*/, const Vec3f& wi,

@@ -19,6 +19,8 @@ class EnvironmentLight : public Light {
 
   std::optional<LightSample> sample(const SurfacePoint& from, const Vec2d& u) const override;
   LightEval eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const override;
+  std::optional<LightRay> emit(const Bounds& scene, const Vec2d& place, const Vec2f& direction,
+                               float time) const override;
   float power(const Bounds& scene) const override;
 
   /// Radiance arriving from the unit direction w.

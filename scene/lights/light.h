@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 
 #include "scene/lights/light_bounds.h"
@@ -37,6 +40,19 @@ struct LightEval {
   float pdf = 0;  ///< per solid angle; 0: sample() never does
 };
 
+/// Light on its way from a light into the scene.
+struct LightRay {
+  Ray ray;            ///< unit direction, free of self-intersection
+  Rgb flux{0, 0, 0};  ///< in watts: over the density of the ray, so that its mean is the light's power
+  /// Metres after which nothing of it arrives, and before which it fades (range_window); of lamps only.
+  float range = std::numeric_limits<float>::infinity();
+};
+
+/// The window by which a lamp's light ends smoothly at its range (KHR_lights_punctual, "Range Property").
+inline float range_window(float range, float distance2) {
+  return std::isfinite(range) ? std::clamp(1 - square(distance2 / square(range)), 0.f, 1.f) : 1;
+}
+
 /// A source of light. Immutable; called from many threads.
 class Light {
  public:
@@ -48,6 +64,12 @@ class Light {
   /// What arrives at `from` along the unit direction -wi from the point `on` of this light (null: from
   /// infinity), which a ray has met and which therefore is there.
   virtual LightEval eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const = 0;
+
+  /// A ray of its light: `place` chooses where it begins, of a lamp with a place where it goes, `direction`
+  /// the rest, `time` of the shutter when. Lights at infinity shine through a disk about `scene`, the bounds
+  /// of all that they may meet.
+  virtual std::optional<LightRay> emit(const Bounds& scene, const Vec2d& place, const Vec2f& direction,
+                                       float time) const = 0;
 
   /// Emitted power in watts, as far as needed to choose between lights; positive if the light contributes
   /// anywhere. `scene`: bounds that lights at infinity shine on.

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include "core/math/frame.h"
 #include "core/math/moments.h"
+#include "core/sampling/warp.h"
+#include "scene/lights/infinite_disk.h"
 #include "scene/moving_mesh.h"
 
 namespace vernier {
@@ -44,20 +47,39 @@ std::optional<LightSample> PunctualLight::sample(const SurfacePoint& from, const
   const float distance2 = length_squared(to_light);
   if (!(distance2 > 0)) return std::nullopt;
   sample.wi = to_light * (1 / std::sqrt(distance2));
-  // Window that ends smoothly at the range (KHR_lights_punctual, "Range Property").
-  float attenuation = 1 / distance2;
-  if (std::isfinite(range_)) attenuation *= std::clamp(1 - square(distance2 / square(range_)), 0.f, 1.f);
-  if (kind_ == Kind::spot) {
-    // Angular attenuation (KHR_lights_punctual, "Inner and Outer Cone Angles") without its sample code's
-    // lower limit of the width, which would dim narrow cones and blur sharp edges.
-    const float inside = -dot(sample.wi, direction) - cos_outer_, width = cos_inner_ - cos_outer_;
-    if (inside < 0) return std::nullopt;
-    if (inside < width) attenuation *= square(inside / width);
-  }
+  float attenuation = 1 / distance2 * range_window(range_, distance2);
+  if (kind_ == Kind::spot) attenuation *= spot_window(-dot(sample.wi, direction));
   if (!(attenuation > 0)) return std::nullopt;
   sample.radiance = intensity_ * attenuation;
   sample.shadow = from.spawn_to(position, {0, 0, 0}, {0, 0, 1});
   return sample;
+}
+
+/// KHR_lights_punctual, "Inner and Outer Cone Angles", without its sample code's lower limit of the width,
+/// which would dim narrow cones and blur sharp edges.
+float PunctualLight::spot_window(float cosine) const {
+  const float inside = cosine - cos_outer_, width = cos_inner_ - cos_outer_;
+  if (inside < 0) return 0;
+  return inside < width ? square(inside / width) : 1;
+}
+
+std::optional<LightRay> PunctualLight::emit(const Bounds& scene, const Vec2d& place,
+                                            const Vec2f& /*direction*/, float time) const {
+  const auto [position, axis] = place_at(time);
+  const Vec2f u = to_float(place);
+  if (kind_ == Kind::directional) return emit_from_infinity(scene, axis, intensity_, u, time);
+  LightRay light{{position, 0, sample_sphere(u)}, intensity_ / sphere_pdf(), range_};
+  light.ray.time = time;
+  if (kind_ == Kind::spot) {
+    // Uniform over the cap of directions of the cone, by Archimedes' hat-box theorem.
+    const float cosine = 1 - u.x * (1 - cos_outer_), sine = safe_sqrt(1 - square(cosine));
+    const float phi = 2 * pi * u.y;
+    light.ray.direction =
+        Frame::from_normal(axis).to_world({sine * std::cos(phi), sine * std::sin(phi), cosine});
+    light.flux = intensity_ * (2 * pi * (1 - cos_outer_) * spot_window(cosine));
+  }
+  if (is_black(light.flux)) return std::nullopt;
+  return light;
 }
 
 LightEval PunctualLight::eval(const SurfacePoint& /*from*/, const Vec3f& /*wi*/,

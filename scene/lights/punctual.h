@@ -15,6 +15,8 @@ class PunctualLight : public Light {
 
   std::optional<LightSample> sample(const SurfacePoint& from, const Vec2d& u) const override;
   LightEval eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const override;
+  std::optional<LightRay> emit(const Bounds& scene, const Vec2d& place, const Vec2f& direction,
+                               float time) const override;
   float power(const Bounds& scene) const override;
   std::optional<LightBounds> bounds() const override;
   bool is_delta() const override { return true; }
@@ -31,6 +33,8 @@ class PunctualLight : public Light {
 
  private:
   LightBounds bounds_at(const Place& place) const;
+  /// Angular attenuation of a spot; cosine: of the angle between its axis and where it shines to.
+  float spot_window(float cosine) const;
 
   PunctualLightDescription::Kind kind_;
   Place place_;                 ///< in the middle of the shutter

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/lights/triangle_light.h"
 
+#include "core/math/frame.h"
 #include "core/sampling/spherical_triangle.h"
 #include "core/sampling/warp.h"
 #include "scene/emission.h"
@@ -43,9 +44,8 @@ class TriangleLight::View {
   /// half.
   Vec2f sample(const Vec2f& u) const {
     if (!first_) {
-      if (shape().opposite) return u;
-      float pdf = 1;
-      return sample_triangle(light_.texture_.empty() ? u : light_.texture_.sample(u, pdf));
+      float pdf;
+      return light_.place_by_area(shape(), u, pdf);
     }
     if (!shape().opposite) return first_->sample(u);
     const float share = first_->solid_angle() / solid_angle_;
@@ -131,6 +131,16 @@ Vec3f TriangleLight::Shape::at(const Vec2f& place) const {
   return a * rest + b * place.x + c * place.y;
 }
 
+Vec2f TriangleLight::place_by_area(const Shape& shape, const Vec2f& u, float& pdf) const {
+  pdf = 1 / shape.area;
+  if (shape.opposite) return u;
+  if (texture_.empty()) return sample_triangle(u);
+  float of_texture = 1;
+  const Vec2f place = sample_triangle(texture_.sample(u, of_texture));
+  pdf *= of_texture;
+  return place;
+}
+
 TriangleId TriangleLight::triangle_at(const Vec2f& place) const {
   return {instance_, shape_.opposite && place.x + place.y > 1 ? opposite_primitive_ : primitive_};
 }
@@ -163,6 +173,27 @@ std::optional<LightSample> TriangleLight::sample(const SurfacePoint& from, const
   const Shape& shape = view.shape();
   return LightSample{
       wi, radiance, pdf, false, from.spawn_to(on, shape.error, shape.normal, triangle_at(place)), {}};
+}
+
+std::optional<LightRay> TriangleLight::emit(const Bounds& /*scene*/, const Vec2d& place,
+                                            const Vec2f& direction, float time) const {
+  const Shape shape = moments_ > 0 ? shape_at(time) : shape_;
+  float pdf;
+  const Vec2f at_place = place_by_area(shape, to_float(place), pdf);
+  // One side or, by the first number's halves, either.
+  const bool two_sided = material_->double_sided();
+  const bool front = !two_sided || direction.x < 0.5f;
+  const Vec2f u(two_sided ? 2 * direction.x - (front ? 0.f : 1.f) : direction.x, direction.y);
+  const Vec3f local = sample_cosine_hemisphere(u);
+  const Vec3f w = Frame::from_normal(front ? shape.normal : -shape.normal).to_world(local);
+  // Over the density by solid angle the cosine leaves pi.
+  const Rgb flux =
+      emission(at_place, time, front, w) * (coverage(at_place) * pi * (two_sided ? 2.f : 1.f) / pdf);
+  if (!(local.z > 0) || is_black(flux)) return std::nullopt;
+  LightRay light{{offset_ray_origin(shape.at(at_place), shape.error, shape.normal, w), 0, w}, flux};
+  light.ray.time = time;
+  light.ray.leaves = triangle_at(at_place);
+  return light;
 }
 
 LightEval TriangleLight::eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const {

@@ -20,6 +20,8 @@ class TriangleLight : public Light {
 
   std::optional<LightSample> sample(const SurfacePoint& from, const Vec2d& u) const override;
   LightEval eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const override;
+  std::optional<LightRay> emit(const Bounds& scene, const Vec2d& place, const Vec2f& direction,
+                               float time) const override;
   float power(const Bounds& /*scene*/) const override { return power_; }
   std::optional<LightBounds> bounds() const override;
 
@@ -40,6 +42,8 @@ class TriangleLight : public Light {
   Shape shape_at(float time) const;
   Shape moment(size_t i) const;
   LightBounds bounds_at(const Shape& shape) const;
+  /// A place by its part of the area, or of the texture's light, with the density per square metre.
+  Vec2f place_by_area(const Shape& shape, const Vec2f& u, float& pdf) const;
   TriangleId triangle_at(const Vec2f& place) const;
   Rgb emission(const Vec2f& barycentrics, float time, bool front, const Vec3f& wo) const;
   float coverage(const Vec2f& barycentrics) const;

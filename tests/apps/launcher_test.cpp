@@ -80,7 +80,8 @@ TEST(CliFiles, AreWrittenFromTheCommandLine) {
   EXPECT_THAT(manual, HasSubstr(".SS vernier bench rays"));
   EXPECT_THAT(manual, Not(HasSubstr("cli\\-files")));
   EXPECT_THAT(contents(folder.file("_vernier")), HasSubstr("_vernier_bench_rays() {"));
-  EXPECT_THAT(contents(folder.file("vernier.fish")), HasSubstr("-l integrator -x -a 'path whitted raycast'"));
+  EXPECT_THAT(contents(folder.file("vernier.fish")),
+              HasSubstr("-l integrator -x -a 'path light whitted raycast'"));
 }
 
 TEST(CliFiles, NeedAFolder) {

@@ -158,5 +158,40 @@ TEST(Film, IsCoveredWhereAnySampleMetASurface) {
   EXPECT_EQ(film.coverage().values, (std::vector<float>{1, 1}));
 }
 
+// The mean over all light paths is added to that over samples, and so is its variance.
+TEST(Film, SplatsAddTheMeanOverLightPaths) {
+  Film film(2, 1, false, true);
+  for (const float value : {1.f, 3.f})
+    for (int half = 0; half < Film::halves; ++half) ASSERT_TRUE(film.add(0, 0, half, Rgb(value)));
+  EXPECT_EQ(film.half_mean(0, 0, 0).x, 2) << "no light path yet";
+  const double variance_of_samples = film.half_mean_variance(0, 0, 0).x;
+  film.splat(0, 0, 0, {4, 0, 0});
+  film.splat(0, 0, 0, {2, 0, 0});
+  film.count_light_paths(0, 8);
+  film.count_light_paths(1, 4);
+  EXPECT_EQ(film.splat_mean(0, 0, 0), Vec3d(0.75, 0, 0));
+  EXPECT_EQ(film.half_mean(0, 0, 0), Vec3d(2.75, 2, 2));
+  EXPECT_EQ(film.half_mean(0, 0, 1), Vec3d(2, 2, 2));
+  EXPECT_EQ(film.pixel(0, 0), Vec3d(2.375, 2, 2));
+  EXPECT_EQ(film.half_mean(1, 0, 0), Vec3d(0, 0, 0));
+  // Eight values: 4, 2 and six times 0.
+  const double spread = 16 + 4 - 36 / 8.;
+  EXPECT_NEAR(film.half_mean_variance(0, 0, 0).x, variance_of_samples + spread / (7 * 8), 1e-12);
+  EXPECT_EQ(film.half_mean_variance(0, 0, 0).y, variance_of_samples);
+  // In the sum of samples, 8, the splats are worth 0.75 times two samples, the largest 1; a sample is
+  // worth 3.
+  EXPECT_NEAR(film.largest_share(0, 0), 3 / 9.5, 1e-12);
+  film.splat(0, 0, 0, {20, 0, 0});
+  EXPECT_NEAR(film.largest_share(0, 0), 5 / 14.5, 1e-12);
+  EXPECT_TRUE(film.is_plausible());
+
+  Film more(2, 1, false, true);
+  more.splat(0, 0, 1, {6, 6, 6});
+  more.count_light_paths(1, 2);
+  film.merge(more);
+  EXPECT_EQ(film.light_paths()[1], 6u);
+  EXPECT_EQ(film.splat_mean(0, 0, 1), Vec3d(1, 1, 1));
+}
+
 }  // namespace
 }  // namespace vernier

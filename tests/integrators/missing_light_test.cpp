@@ -32,6 +32,7 @@ MissingEstimate missing(const Scene& scene, int max_depth, bool adaptive = true,
   camera.yfov = 0.2f;
   IntegratorOptions options;
   options.max_depth = max_depth;
+  options.caustics = Caustics::off;
   RenderSettings render_options;
   render_options.width = render_options.height = 24;
   render_options.limits.spp = 64;

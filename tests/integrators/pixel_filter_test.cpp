@@ -205,5 +205,29 @@ TEST(PixelFilter, IsReadAsItIsWritten) {
   EXPECT_THAT(complaint("box:"), HasSubstr("width in pixels"));
 }
 
+// Light at any position gets to each pixel by the density with which the pixel's samples lie there: counted
+// by cells of a tenth of a pixel.
+TEST(PixelFilter, SharesAreOfTheDensityOfSamples) {
+  constexpr int cells = 10, pixels = 6, samples = 200000, steps = 4000;
+  for (const char* text : {"box", "box:0.5", "box:2.5", "gaussian:3", "blackman-harris"}) {
+    const FilterSampler filter(parse_filter(text));
+    std::vector<double> sampled(cells * pixels), shared(cells * pixels);
+    // Of pixel 3, by the cell of the row that a sample lies in.
+    for (int i = 0; i < samples; ++i) {
+      const float at = 3 + filter.sample({(float(i) + 0.5f) / samples, 0.5f}).x;
+      sampled[size_t(at * cells)] += 1. / samples;
+    }
+    for (int cell = 0; cell < cells * pixels; ++cell)
+      for (int i = 0; i < steps; ++i) {
+        // Positions within the cell, and a number that is even over them.
+        const float at = (float(cell) + (float(i % 40) + 0.5f) / 40) / cells;
+        const auto share = filter.share(at, (float(i / 40) + 0.5f) / (steps / 40));
+        if (share.pixel == 3) shared[size_t(cell)] += double(share.weight) / steps / cells;
+      }
+    for (size_t cell = 0; cell < sampled.size(); ++cell)
+      EXPECT_NEAR(shared[cell], sampled[cell], 2e-3) << text << " " << cell;
+  }
+}
+
 }  // namespace
 }  // namespace vernier::test

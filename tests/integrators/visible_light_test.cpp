@@ -111,5 +111,14 @@ TEST(VisibleLight, SurroundingsCanBeReplaced) {
   EXPECT_EQ(seen(scene).lit, 1);
 }
 
+// All that is seen is lit by a lamp in glass.
+TEST(VisibleLight, CausticsOfALampAreEnough) {
+  SceneBuilder builder = body();
+  builder.add(sphere({0, 0, 8}, 2.f, 16, 32), glass(0))
+      .add(lamp(PunctualLightDescription::Kind::point, 50, {0, 0, 8}));
+  const VisibleLight light = seen(builder.build());
+  EXPECT_FALSE(is_dark(light)) << light.lit << " " << light.shown;
+}
+
 }  // namespace
 }  // namespace vernier::test

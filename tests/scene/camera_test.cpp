@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/math/frame.h"
 #include "tests/support/random.h"
 
 namespace vernier::test {
@@ -121,6 +122,39 @@ TEST(Camera, SolidAngle) {
     }
   const double b = std::tan(0.4), a = b * width / height;
   EXPECT_NEAR(sum, 4 * std::asin(a * b / std::sqrt((1 + a * a) * (1 + b * b))), 1e-4);
+}
+
+// A point's sight is the ray through it, and its area what the raster positions of points beside it span, on
+// a surface that faces the ray.
+TEST(Camera, SightIsTheRayAndItsDensity) {
+  Random random(6);
+  using Kind = CameraDescription::Kind;
+  for (const auto kind : {Kind::perspective, Kind::orthographic, Kind::panorama})
+    for (const float lens : {0.f, 0.1f}) {
+      if (lens > 0 && kind != Kind::perspective) continue;
+      CameraDescription description = turned(kind);
+      description.lens_radius = lens;
+      description.focus_distance = 4;
+      const Camera camera(description, 640, 400);
+      for (int i = 0; i < 300; ++i) {
+        const Vec2f u = random.next2(), on_lens = (random.next2() - Vec2f(0.5f, 0.5f)) * 1.2f;
+        const Vec2f raster(20 + u.x * 600, 60 + u.y * 280);
+        const Ray ray = lens > 0 ? camera.ray(raster, on_lens) : camera.ray(raster);
+        const Vec3f at = ray.at(1 + 5 * random.next1());
+        const auto sight = camera.sight(at, on_lens, middle_of_shutter);
+        ASSERT_TRUE(sight);
+        EXPECT_LT(length(sight->origin - ray.origin), 1e-5f);
+        EXPECT_LT(length(Vec3f(sight->raster.x - raster.x, sight->raster.y - raster.y, 0)), 5e-3f);
+        const Frame frame = Frame::from_normal(ray.direction);
+        const float step = 0.02f;
+        const auto beside = [&](const Vec3f& way) {
+          return camera.sight(at + way * step, on_lens, middle_of_shutter)->raster;
+        };
+        const Vec2f x = (beside(frame.x) - beside(-frame.x)) / (2 * step);
+        const Vec2f y = (beside(frame.y) - beside(-frame.y)) / (2 * step);
+        EXPECT_NEAR(std::abs(x.x * y.y - x.y * y.x), sight->area, 5e-3f * sight->area);
+      }
+    }
 }
 
 }  // namespace

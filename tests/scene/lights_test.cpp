@@ -411,5 +411,26 @@ TEST(EnvironmentLight, Orientation) {
   EXPECT_LT(length(direction_of_light() - Vec3f(out * std::sin(a), down, -out * std::cos(a))), 0.03f);
 }
 
+// What lights emit is their power, in the mean over rays, each of which begins where it says and shines on
+// the scene.
+TEST(Lights, EmitTheirPower) {
+  const Scene scene = lit_floor(3);
+  for (size_t i = 0; i < scene.lights().size(); ++i) {
+    const Light& light = scene.lights()[i];
+    constexpr int side = 256;
+    double sum = 0;
+    Random random(i + 1);
+    for (int k = 0; k < side * side; ++k) {
+      const Vec2d place((k % side + double(random.next1())) / side,
+                        (k / side + double(random.next1())) / side);
+      const auto ray = light.emit(scene.bounds(), place, random.next2(), middle_of_shutter);
+      if (!ray) continue;
+      EXPECT_NEAR(length(ray->ray.direction), 1, 1e-5);
+      sum += double(luminance(ray->flux)) / (side * side);
+    }
+    EXPECT_NEAR(sum, double(light.power(scene.bounds())), 0.01 * sum) << i;
+  }
+}
+
 }  // namespace
 }  // namespace vernier::test

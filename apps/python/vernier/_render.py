@@ -42,9 +42,11 @@ class Settings(TypedDict, total=False):
     fog: Fog | float | None
     """What fills the air and scatters light; a number is its density per metre (None: nothing)."""
     integrator: str
-    """"path", "whitted" or "raycast" ("path")."""
+    """"path", "light", "whitted" or "raycast" ("path")."""
     max_depth: int
     """Path vertices after the camera (16)."""
+    caustics: str
+    """path: what lamps cast by mirrors and bending glass, "auto", "on" or "off" ("auto")."""
     show: str
     """raycast: what is shown ("normal")."""
     ambient: float
@@ -125,7 +127,7 @@ def _request(scene: Scene, given: Settings) -> Request:
     settings["crop"] = None if crop is None else [_whole(number, "crop") for number in crop]
     settings["seed"] = _whole(given.get("seed", 0), "seed")
     settings["max-depth"] = _whole(given.get("max_depth", settings["max-depth"]), "max_depth", 1)
-    for name in ("filter", "integrator", "show"):
+    for name in ("filter", "integrator", "caustics", "show"):
         settings[name] = str(given.get(name, settings[name]))
     for name in ("ambient", "cutoff"):
         settings[name] = float(given.get(name, settings[name]))  # type: ignore[arg-type]
