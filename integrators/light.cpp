@@ -20,7 +20,8 @@ class LightIntegrator : public Integrator {
     ++out.rays.camera;
     out.met_surface = hit.has_value();
     for (int depth = 1; depth <= options_.max_depth; ++depth) {
-      throughput *= transmittance(scene.volumes().medium(segment.media), hit ? hit->t : segment.ray.t_max);
+      throughput *= transmittance(
+          scene.volumes().stretch(segment.media, segment.ray, 0, hit ? hit->t : segment.ray.t_max));
       if (!hit && options_.background_apart) {
         out.background = throughput;
         break;

@@ -8,14 +8,23 @@ namespace vernier {
 FreeFlight::FreeFlight(const Medium& medium, const Rgb& carried, float length)
     : medium_(medium), share_(1.f / 3), length_(length) {
   const float all = carried.x + carried.y + carried.z;
-  if (all > 0 && std::isfinite(all)) share_ = carried * (1 / all);
+  // Of next to nothing no quotients can be told.
+  if (all > std::numeric_limits<float>::min() && std::isfinite(all)) share_ = carried / all;
 }
 
 FreeFlight::Sample FreeFlight::sample(double u) const {
-  int channel = 0;
-  double below = 0;
-  while (channel < 2 && u >= below + double(share_[channel])) below += double(share_[channel++]);
-  const double within = share_[channel] > 0 ? (u - below) / double(share_[channel]) : 0;
+  // The last of those that have a share also gets what rounding leaves of 1.
+  int channel = share_.z > 0 ? 2 : share_.y > 0 ? 1 : 0;
+  double below = 1 - double(share_[channel]);
+  const double x = double(share_.x), y = double(share_.y);
+  if (u < x) {
+    channel = 0;
+    below = 0;
+  } else if (channel == 2 && u < x + y) {
+    channel = 1;
+    below = x;
+  }
+  const double within = (u - below) / double(share_[channel]);
   const float extinction = medium_.extinction[channel];
   const float distance =
       extinction > 0 ? float(-std::log1p(-std::clamp(within, 0., 0x1.fffffffffffffp-1)) / double(extinction))

@@ -172,9 +172,10 @@ void note_bent_light(SceneDescription& scene) {
   if (scene.lights.empty() || std::none_of(scene.instances.begin(), scene.instances.end(), bends)) return;
   for (FeatureUse& feature : scene.features)
     if (feature.name == "KHR_lights_punctual")
-      feature = {
-          feature.name, Status::approximated,
-          "light of a lamp that a volume bends on its way is not found; renders tell how much that is"};
+      feature = {feature.name, Status::approximated,
+                 "light of a lamp that a volume bends is not found where it is seen in a mirror or through "
+                 "glass that "
+                 "bends it; renders tell how much that is"};
 }
 
 std::string describe(const FeatureUse& feature) {

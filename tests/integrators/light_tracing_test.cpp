@@ -14,6 +14,7 @@ struct View {
   int max_depth = 4;
   double resolution = 0.03;  ///< relative bias of the picture that is to be found nine times in ten
   PixelFilter filter = {};
+  Fog fog = {};
 };
 
 MaterialDescription grey(MaterialDescription material, float reflectance) {
@@ -187,6 +188,74 @@ View aquarium() {
           camera_at({0.2f, 1.5f, 2}, {0.1f, 0.1f, 0}, 0.8f), 4, 0.03};
 }
 
+/// Lamps and a panel in fog that scatters on, around glass that does not bend.
+View foggy() {
+  View view = lamps();
+  view.name = "foggy";
+  view.scene.add(parallelogram({-1, 1.8f, -1}, {0.8f, 0, 0}, {0, 0, 0.8f}), emitter(3));
+  view.fog = {0.3f, {0.9f, 0.7f, 0.5f}, 0.5f, 4};
+  view.resolution = 0.05;
+  return view;
+}
+
+/// Fog under a sky, which begins where the fog ends.
+View misty_sky() {
+  View view = sky();
+  view.name = "misty sky";
+  view.fog = {0.2f, Rgb(0.9f), -0.3f, 5};
+  return view;
+}
+
+/// Media that scatter below a diffuse, a rough and a clear boundary, one with a lamp inside.
+View milk() {
+  const auto filled = [](MaterialDescription material, const Rgb& albedo, float g) {
+    material.thickness = 1;
+    material.attenuation_color = {0.1f, 0.2f, 0.4f};
+    material.attenuation_distance = 0.3f;
+    material.scattering_albedo = albedo;
+    material.scattering_anisotropy = g;
+    return material;
+  };
+  MaterialDescription wax = grey(plastic(0.5f), 0.8f);
+  wax.diffuse_transmission = 1;
+  MaterialDescription clear = glass(0);
+  clear.ior = 1;
+  return {"milk",
+          SceneBuilder()
+              .add(floor_mesh(), grey(diffuse(1), 0.7f))
+              .add(box({-0.9f, 0.1f, -0.4f}, {-0.4f, 0.7f, 0.3f}), filled(wax, {0.95f, 0.8f, 0.6f}, 0.3f))
+              .add(box({-0.3f, 0.1f, -0.4f}, {0.2f, 0.7f, 0.3f}), filled(glass(0.6f), Rgb(0.9f), 0))
+              .add(box({0.3f, 0.1f, -0.4f}, {0.9f, 0.7f, 0.3f}), filled(clear, {0.5f, 0.9f, 0.99f}, -0.5f))
+              .add(parallelogram({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}), emitter(4))
+              .add(lamp(Kind::point, {-1.5f, 1.2f, 1}, {0, -1, 0}, 3))
+              .add(lamp(Kind::point, {0.6f, 0.4f, 0}, {0, -1, 0}, 0.3f)),
+          camera_at({0.5f, 1.5f, 3}, {0, 0.3f, 0}, 0.6f), 6, 0.06};
+}
+
+/// Everything moves while the shutter is open.
+View moving() {
+  const auto moved = [](const Transform& still, float part) {
+    Transform to = still;
+    to.origin += Vec3f(0.4f * part, 0.1f * part, -0.2f * part);
+    return to;
+  };
+  View view = lamps();
+  view.name = "moving";
+  PunctualLightDescription swinging = lamp(Kind::spot, {-0.5f, 1.5f, 0.5f}, {0.3f, -1, 0}, 5);
+  MeshDescription panel = parallelogram({-1, 1.8f, -1}, {0.8f, 0, 0}, {0, 0, 0.8f});
+  for (const float part : {-1.f, 0.f, 1.f}) {
+    swinging.moments.push_back(moved(swinging.to_world, part));
+    view.camera.moments.push_back(moved(view.camera.to_world, 0.3f * part));
+    MeshShape shape;
+    for (const Vec3f& at : panel.positions) shape.positions.push_back(at + Vec3f(0, 0.3f * part, part));
+    panel.moments.push_back(shape);
+  }
+  view.scene.add(swinging).add(panel, emitter(4));
+  view.fog = {0.1f, Rgb(0.8f), 0, 4};
+  view.resolution = 0.05;
+  return view;
+}
+
 View seen_by(View view, CameraDescription::Kind kind, const PixelFilter& filter) {
   view.camera.kind = kind;
   view.camera.ymag = 0.8f;
@@ -211,13 +280,15 @@ class LightTracing : public testing::TestWithParam<View (*)()> {};
 
 constexpr std::array views{
     room,           lamps,         sky,   flame_card_mask, flame_card_blend, screens,    layers,
-    smooth_shading, frosted_glass, panes, aquarium,        by_parallel_rays, all_around, through_a_lens};
+    smooth_shading, frosted_glass, panes, aquarium,        by_parallel_rays, all_around, through_a_lens,
+    foggy,          misty_sky,     milk,  moving};
 
 // Welch's tests of every pixel, family significance 0.001.
 TEST_P(LightTracing, AgreesWithPaths) {
   const double significance = sidak(1e-3, std::size(views));
   View view = GetParam()();
-  const Scene scene = view.scene.build();
+  Scene scene = view.scene.build();
+  scene.fill_air(view.fog);
   double resolved = 0;
   const auto p_value = [&](uint64_t seed, uint64_t factor) {
     PictureCase picture{scene, view.camera, {}};

@@ -98,7 +98,8 @@ double h_function(double mu, double albedo) {
   for (int round = 0; round < 60; ++round) {
     std::vector<double> next(n);
     for (int i = 0; i < n; ++i) next[size_t(i)] = 1 / inverse(at(i));
-    h = next;
+    // Half a step: whole ones swing about the solution where nothing is absorbed.
+    for (int i = 0; i < n; ++i) h[size_t(i)] = (h[size_t(i)] + next[size_t(i)]) / 2;
   }
   return 1 / inverse(mu);
 }

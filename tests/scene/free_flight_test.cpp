@@ -75,6 +75,20 @@ TEST(FreeFlight, WeightsAreRightInTheMean) {
   }
 }
 
+// Paths may carry next to nothing, or light of one color alone.
+TEST(FreeFlight, IsDefinedAtTheLimits) {
+  for (const Rgb& carried : {Rgb(0, 0, 0), Rgb(1e-39f, 1e-42f, 0), Rgb(1, 1e-30f, 0), Rgb(0, 0.3f, 0),
+                             Rgb(0.1f, 0.2f, 0.7f), Rgb(3e38f, 3e38f, 3e38f)})
+    for (const float length : {0.f, 1e-20f, 1.f, std::numeric_limits<float>::infinity()}) {
+      const FreeFlight flight(colored, carried, length);
+      for (const double u : {0., 1e-300, 0.3, 0.999999, 0x1.fffffffffffffp-1}) {
+        const auto sample = flight.sample(u);
+        EXPECT_TRUE(is_finite(sample.weight)) << carried << ", length " << length << ", u " << u;
+        EXPECT_GE(sample.distance, 0);
+      }
+    }
+}
+
 PunctualLightDescription lamp_at(const Vec3f& position, float cone, float range, float intensity = 1) {
   PunctualLightDescription lamp;
   lamp.intensity = intensity;

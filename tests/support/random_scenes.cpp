@@ -16,7 +16,7 @@ namespace {
 
 class Maker {
  public:
-  explicit Maker(uint64_t seed) : random_(seed) {}
+  explicit Maker(uint64_t seed) : random_(seed), media_(~seed) {}
 
   RandomScene make() {
     texture();
@@ -158,9 +158,9 @@ class Maker {
     m.attenuation_distance = between(0.2f, 2);
     m.attenuation_color = color(0.2f, 1);
     if (chance(0.2f)) m.dispersion = between(0, 5);
-    if (!chance(0.3f)) return;
-    m.scattering_albedo = color(0.3f, 1);
-    m.scattering_anisotropy = chance(0.3f) ? 0 : between(-0.6f, 0.8f);
+    if (media_.next1() < 0.7f) return;
+    for (int c = 0; c < 3; ++c) m.scattering_albedo[c] = lerp(media_.next1(), 0.3f, 1);
+    m.scattering_anisotropy = media_.next1() < 0.3f ? 0 : lerp(media_.next1(), -0.6f, 0.8f);
   }
 
   void lights() {
@@ -193,7 +193,7 @@ class Maker {
     }
   }
 
-  Random random_;
+  Random random_, media_;
   RandomScene result_;
 };
 
