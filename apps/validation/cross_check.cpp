@@ -51,6 +51,8 @@ void CrossCheck::judge(const Difference& difference) const {
   const Geometry view = geometry_.view();
   const auto corners = [&](const std::optional<RawHit>& hit) -> std::optional<Corners> {
     if (!hit) return std::nullopt;
+    // Accelerators may round the vertices of what moves each in its own way, and so what they meet.
+    if (geometry_.moments(hit->instance) > 0) distortion = std::max(distortion, 2.0);
     const Transform& to_world = view.instances[hit->instance].to_world;
     if (!to_world.is_identity())
       if (const auto to_mesh = WorldToMesh::of(to_world))

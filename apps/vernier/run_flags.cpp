@@ -43,7 +43,8 @@ void add_run_flags(CLI::App& command, RunFlags& flags) {
   command.add_option("--turntable", flags.turntable, "so many pictures from all around, at equal angles")
       ->transform(whole_number(1, 100'000))
       ->type_name("N");
-  add_shutter_flags(command, flags.shutter);
+  add_shutter_flag(command, flags.shutter);
+  add_shutter_shape_flag(command, flags.shutter);
   command.add_flag("--skip-existing", flags.skip_existing,
                    "leave out pictures whose files are there and finished");
   command.add_flag("--keep-going", flags.keep_going,

@@ -67,7 +67,7 @@ float parse_shape(const std::string& text) {
 
 }  // namespace
 
-void add_shutter_flags(CLI::App& command, ShutterFlags& flags) {
+void add_shutter_flag(CLI::App& command, ShutterFlags& flags) {
   command
       .add_option(
           "--shutter", flags.shutter,
@@ -75,6 +75,9 @@ void add_shutter_flags(CLI::App& command, ShutterFlags& flags) {
           "in seconds (docs/motion.md)")
       ->check(parsed_by([](const std::string& text) { return parse_shutter(text); }))
       ->type_name("PART|OPEN,CLOSE");
+}
+
+void add_shutter_shape_flag(CLI::App& command, ShutterFlags& flags) {
   command
       .add_option(
           "--shutter-shape", flags.shape,

@@ -15,8 +15,10 @@ struct ShutterFlags {
   std::string shape;    ///< empty: not given, a box
 };
 
-/// Declares the flags on `command`.
-void add_shutter_flags(CLI::App& command, ShutterFlags& flags);
+/// Declares --shutter on `command`.
+void add_shutter_flag(CLI::App& command, ShutterFlags& flags);
+/// Declares --shutter-shape.
+void add_shutter_shape_flag(CLI::App& command, ShutterFlags& flags);
 
 /// "0.5": a part of a frame, half of it before and half after the frame's time; "-0.01,0.02": from so many
 /// seconds after that time to so many. None where none was given. Throws Error(usage).

@@ -6,6 +6,7 @@
 #include "apps/validation/cross_check.h"
 #include "apps/vernier/choose_camera.h"
 #include "apps/vernier/flags.h"
+#include "apps/vernier/run_plan.h"
 #include "apps/vernier/surroundings.h"
 #include "core/base/names.h"
 #include "core/base/one_line.h"
@@ -21,6 +22,7 @@ namespace {
 struct VerifyFlags {
   std::string scene;
   ImportOptions import;
+  ShutterFlags shutter;
   CameraFlags camera;
   uint64_t rays = 1'000'000;
   std::string accelerators = "embree,bvh";
@@ -92,7 +94,11 @@ ExitCode run_verify(const VerifyFlags& flags) {
   const Pair pair = parse_pair(flags.accelerators);
   const ThreadLimit threads(flags.threads);
   NoticeLog log(true);
-  SceneDescription description = import_scene(flags.scene, flags.import);
+  if (!flags.shutter.shutter.empty() && !flags.import.time)
+    throw Error(ErrorKind::usage, "--shutter needs --at, for without a time everything is at rest");
+  ImportOptions import = flags.import;
+  import.shutter = shutter_of(flags.shutter, frame_seconds(RunFlags{}));
+  SceneDescription description = import_scene(flags.scene, import);
   const auto chosen = choose_camera(description.cameras, flags.camera, log);
   Scene scene(std::move(description), {std::string(pair[0]->name)});
   RenderSettings settings;
@@ -123,6 +129,7 @@ void register_verify(Program& program) {
       "verify", "Trace the rays of a scene's paths with two accelerators and tell where they differ");
   auto flags = std::make_shared<VerifyFlags>();
   add_scene_flags(*command, flags->scene, flags->import);
+  add_shutter_flag(*command, flags->shutter);
   add_camera_flags(*command, flags->camera);
   command->option_defaults()->group("Check");
   command->add_option("--rays", flags->rays, "how many at least")

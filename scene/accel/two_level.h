@@ -18,8 +18,8 @@ namespace vernier {
 
 /// What `bvh`, `octree` and `brute_force` share: a Structure over all triangles in world space, one for each
 /// mesh that is placed by a transform, a tree over those instances, and one Moving for what moves, for each
-/// number of moments. Of hits at the same t, the first by
-/// instance and primitive wins, so all Structures give the same answers to the bit.
+/// number of moments. Of hits at the same t, the first by instance and primitive wins, so all Structures give
+/// the same answers to the bit.
 ///
 /// Structure: Structure(TriangleSet), bounds(), bytes(), and
 ///   bool traverse<ordered>(const Ray&, QueryCost*, Blocks&&)

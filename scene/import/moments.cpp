@@ -71,7 +71,8 @@ class MotionReader {
       if (instants_[k]) continue;
       instants_[k] = instant_at(posed_, middle + (double(k) / (most_moments - 1) - 0.5) * length);
       changes_ = changes_ || instants_[k]->changes;
-      if (instants_[k]->placement.instances.size() == scene_.instances.size() &&
+      if (instants_[k]->placement.too_far.empty() &&
+          instants_[k]->placement.instances.size() == scene_.instances.size() &&
           instants_[k]->seen.lights.size() == scene_.lights.size())
         continue;
       scene_.notices.push_back({Notice::Severity::warning, "/animations",
