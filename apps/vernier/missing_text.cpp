@@ -29,15 +29,18 @@ std::string missing_text(const MissingEstimate& missing) {
 
 void warn_of_missing_light(const RenderResult& result, int max_depth, NoticeLog& log) {
   const MissingEstimate& missing = result.missing;
-  if (missing.bent.share >= least_missing_share)
+  if (missing.bent.share >= least_missing_share) {
+    const bool has_caustics = result.film.has_splats();
     log.add(
         {Notice::Severity::warning,
          {},
          fmt::format("lamps shine through glass that bends their light{}: up to {} of all light is not in "
-                     "this picture and not in its error; an emissive mesh in place of the lamp, or glass "
-                     "without thickness, is rendered in full",
-                     result.film.has_splats() ? " on what mirrors and such glass show" : "",
-                     percent(missing.bent.share))});
+                     "this picture and not in its error; {}",
+                     has_caustics ? ", on what mirrors and such glass show" : "", percent(missing.bent.share),
+                     has_caustics ? "an emissive mesh in place of the lamp, or glass without thickness, is "
+                                    "rendered in full"
+                                  : "--integrator path with --caustics auto brings it")});
+  }
   if (missing.depth.share >= least_missing_share)
     log.add(
         {Notice::Severity::warning,

@@ -15,6 +15,7 @@
 #include "core/base/fingerprint.h"
 #include "integrators/render/backdrop.h"
 #include "integrators/render/checkpoint.h"
+#include "integrators/render/checkpoint_file.h"
 #include "scene/camera.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_scenes.h"
@@ -51,7 +52,7 @@ struct Parts {
     }
     if (text.empty()) text = header.dump();
     std::string file = "VERNCKPT";
-    for (const uint32_t number : {4u, uint32_t(text.size())})
+    for (const uint32_t number : {CheckpointPreamble::current_format, uint32_t(text.size())})
       file.append(reinterpret_cast<const char*>(&number), sizeof(number));
     file += fingerprint(std::as_bytes(std::span(text))) + text;
     for (const std::string& array : arrays) file += array;
@@ -82,7 +83,8 @@ class CheckpointMutation : public testing::Test {
     try {
       Checkpoint checkpoint = read_checkpoint(path);
       const LightSorter sorter(options_.light_split, scene_);
-      if (!go_on || !checkpoint.state->fits(options_.width, options_.height, true, false, sorter.layers()))
+      if (!go_on ||
+          !checkpoint.state->fits(options_.width, options_.height, true, false, sorter.layers(), true))
         return {};
       options_.limits.spp = 49;  // through the end of the pass and a planning
       render({scene_, *camera_, *integrator_, options_, Backdrop(options_), sorter}, *checkpoint.state,
@@ -133,7 +135,7 @@ class CheckpointMutation : public testing::Test {
                            .add(box({-1, 0, -1}, {1, 2, 1}, true), plastic(0.4f))
                            .add(parallelogram({-0.3f, 1.9f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}), emitter(5))
                            .build();
-  const std::unique_ptr<Integrator> integrator_ = path({.max_depth = 3});
+  const std::unique_ptr<Integrator> integrator_ = path({.max_depth = 3, .caustics = Caustics::on});
   RenderSettings options_;
   std::optional<Camera> camera_;
   std::atomic<bool> stop_ = false;
@@ -167,7 +169,7 @@ TEST_F(CheckpointMutation, HostileHeaders) {
       "/samples",       "/rays",           "/rays/0",         "/rays/2",         "/bad_samples",
       "/arrays",        "/arrays/0",       "/arrays/0/bytes", "/arrays/3/bytes", "/arrays/4/bytes",
       "/arrays/5/name", "/arrays/5/bytes", "/arrays/6/bytes", "/arrays/7/bytes", "/render",
-      "/render/0",      "/render/0/1"};
+      "/render/0",      "/render/0/1",     "/has_splats",     "/light_batches",  "/bad_light_paths"};
   int accepted = 0;
   for (int i = 0; i < 3000; ++i) {
     Parts parts(bytes_);

@@ -224,6 +224,7 @@ TEST(RenderSettingsJson, HoldsAllThatSamplesDependOn) {
   settings.integrator_options = {.max_depth = 5,
                                  .light_sampling = LightSampling::light,
                                  .russian_roulette = false,
+                                 .caustics = Caustics::off,
                                  .show = "id",
                                  .ambient = 0.1f,
                                  .cutoff = 0.3f};
