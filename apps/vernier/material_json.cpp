@@ -66,6 +66,8 @@ Json material_json(const MaterialDescription& m) {
           {"thickness", number_json(m.thickness)},
           {"attenuation_distance", number_json(m.attenuation_distance)},
           {"attenuation_color", vector_json(m.attenuation_color)},
+          {"scattering_albedo", vector_json(m.scattering_albedo)},
+          {"scattering_anisotropy", number_json(m.scattering_anisotropy)},
           {"clearcoat", number_json(m.clearcoat)},
           {"clearcoat_roughness", number_json(m.clearcoat_roughness)},
           {"sheen_color", vector_json(m.sheen_color)},

@@ -117,6 +117,22 @@ TEST(Surroundings, MisspeltNamesAndUselessFlagsAreRefused) {
   EXPECT_THAT(refused({"--env", "none", "--env-rotate", "2"}), HasSubstr("need --env"));
 }
 
+TEST(Surroundings, FogFillsTheAirAndSaysHowFar) {
+  const test::TemporaryFolder folder;
+  const std::string scene = triangle_scene(folder, plastic);
+  const double clear = mean(rendered(folder, scene, {"--env", "sky"}).picture);
+  const Rendered foggy = rendered(folder, scene, {"--env", "sky", "--fog", "5,0,0,3"});
+  EXPECT_LT(mean(foggy.picture), 0.1 * clear);
+  EXPECT_THAT(foggy.result.err, HasSubstr("fog fills a ball of 3 m"));
+  EXPECT_THAT(rendered(folder, scene, {"--env", "sky", "--fog", "0.1", "--integrator", "whitted"}).result.err,
+              HasSubstr("scatters none"));
+  for (const char* wrong : {"", "x", "-1", "0.1,foo", "0.1,2", "0.1,1,2", "0.1,1,0,0", "1,1,0,1,1", "nan"}) {
+    const ProcessResult result = rendered(folder, scene, {"--fog", wrong}).result;
+    EXPECT_EQ(result.exit_code, *wrong ? 2 : 0) << wrong;
+    if (*wrong) EXPECT_THAT(result.err, HasSubstr("expected DENSITY per metre")) << wrong;
+  }
+}
+
 TEST(Surroundings, InfoTellsWhatARenderWouldUse) {
   const test::TemporaryFolder folder;
   const auto told = [](const std::string& scene) {

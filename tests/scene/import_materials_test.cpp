@@ -55,6 +55,56 @@ TEST(ImportMaterials, GivesPrimitivesWithoutOneTheDefault) {
   EXPECT_EQ(m.clearcoat, 0.f);
 }
 
+/// A closed body of wax with the scattering extension given.
+json wax(const std::string& extension, const json& scattering) {
+  return {{"extensions",
+           {{"KHR_materials_diffuse_transmission", {{"diffuseTransmissionFactor", 1}}},
+            {"KHR_materials_volume",
+             {{"thicknessFactor", 1}, {"attenuationDistance", 0.1}, {"attenuationColor", {0.5, 0.5, 0.5}}}},
+            {extension, scattering}}}};
+}
+
+// Kulla and Conty 2017: nothing and everything stay, 0.8 takes many scatterings of 0.9875.
+TEST(ImportMaterials, ReadsScatteringOfBothDrafts) {
+  const MaterialDescription first =
+      with_material(wax("KHR_materials_volume_scatter",
+                        {{"multiscatterColor", {0, 0.8, 1}}, {"scatterAnisotropy", 0.3}}))
+          .import()
+          .materials[0];
+  EXPECT_NEAR(first.scattering_albedo.x, 0, 1e-4f);
+  EXPECT_NEAR(first.scattering_albedo.y, 0.9847f, 1e-3f);
+  EXPECT_NEAR(first.scattering_albedo.z, 1, 1e-4f);
+  EXPECT_EQ(first.scattering_anisotropy, 0.3f);
+  const auto later = [](double strength) {
+    return with_material(wax("KHR_materials_scatter", {{"scatterStrengthFactor", strength},
+                                                       {"multiscatterColorFactor", {0.8, 0.8, 0.8}},
+                                                       {"scatterAnisotropy", 0.5}}))
+        .import()
+        .materials[0]
+        .scattering_albedo;
+  };
+  const float s2 = 1 - first.scattering_albedo.y;
+  EXPECT_NEAR(later(1).y, (1 - s2) / (1 - 0.5f * s2), 1e-4f);
+  EXPECT_EQ(later(0), Rgb(0, 0, 0));
+  EXPECT_LT(later(0.5).y, later(1).y);
+}
+
+TEST(ImportMaterials, WarnsOfScatteringThatScattersNothing) {
+  const json scattering{{"multiscatterColor", {0.8, 0.8, 0.8}}};
+  json thin = wax("KHR_materials_volume_scatter", scattering), clear = thin;
+  thin["extensions"]["KHR_materials_volume"]["thicknessFactor"] = 0;
+  clear["extensions"]["KHR_materials_volume"].erase("attenuationDistance");
+  const auto [of_thin, of_clear] = std::pair(with_material(thin).import(), with_material(clear).import());
+  EXPECT_TRUE(has_notice(of_thin, "the material is thin-walled"));
+  EXPECT_TRUE(has_notice(of_clear, "nothing is scattered"));
+  for (const SceneDescription* scene : {&of_thin, &of_clear})
+    EXPECT_EQ(scene->materials[0].scattering_albedo, Rgb(0, 0, 0));
+  EXPECT_TRUE(has_notice(with_material(wax("KHR_materials_volume_scatter",
+                                           {{"multiscatterColor", {1, 1, 1}}, {"scatterAnisotropy", 1.5}}))
+                             .import(),
+                         "scatterAnisotropy"));
+}
+
 TEST(ImportMaterials, ReadsFactors) {
   const MaterialDescription m =
       with_material(

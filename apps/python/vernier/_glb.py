@@ -25,6 +25,8 @@ _EXTENSIONS = {
     "thickness": ("KHR_materials_volume", "thicknessFactor"),
     "attenuation_distance": ("KHR_materials_volume", "attenuationDistance"),
     "attenuation_color": ("KHR_materials_volume", "attenuationColor"),
+    "multiscatter_color": ("KHR_materials_volume_scatter", "multiscatterColor"),
+    "scatter_anisotropy": ("KHR_materials_volume_scatter", "scatterAnisotropy"),
     "clearcoat": ("KHR_materials_clearcoat", "clearcoatFactor"),
     "clearcoat_roughness": ("KHR_materials_clearcoat", "clearcoatRoughnessFactor"),
     "sheen_color": ("KHR_materials_sheen", "sheenColorFactor"),

@@ -40,6 +40,10 @@ class Material:
     attenuation_distance: float | None = None
     """Metres."""
     attenuation_color: Sequence[float] | None = None
+    multiscatter_color: Sequence[float] | None = None
+    """Of a volume that scatters light: about its colour when it is thick."""
+    scatter_anisotropy: float | None = None
+    """Mean cosine of the deflection, in (-1, 1)."""
     clearcoat: float | None = None
     clearcoat_roughness: float | None = None
     sheen_color: Sequence[float] | None = None
