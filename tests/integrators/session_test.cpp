@@ -263,7 +263,7 @@ TEST(RenderSettingsJson, RefusesWhatIsNone) {
     EXPECT_NE(at, std::string::npos) << from;
     return read(text.replace(at, from.size(), to));
   };
-  EXPECT_THAT(changed("\"vernier_settings\": 1", "\"vernier_settings\": 2"), HasSubstr("are of format 2"));
+  EXPECT_THAT(changed("\"vernier_settings\": 2", "\"vernier_settings\": 3"), HasSubstr("are of format 3"));
   EXPECT_THAT(changed("\"seed\"", "\"sed\""), HasSubstr("seed"));
   EXPECT_THAT(changed("\"mis\"", "\"mas\""), HasSubstr("mis"));
   EXPECT_THAT(changed("\"perspective\"", "\"fisheye\""), HasSubstr("fisheye"));
