@@ -87,6 +87,21 @@ TEST(Caustics, SunThroughAThickPane) {
   }
 }
 
+// Light that stays in what bends it: radiance in water is greater by the squared index than what gets in, by
+// the rays that get nearer to each other, and what a camera in the water shows is less by as much.
+TEST(Caustics, SunIntoWaterWithACamera) {
+  const Scene scene = SceneBuilder()
+                          .add(parallelogram({-1, 0.1f, -1}, {0, 0, 2}, {2, 0, 0}), diffuse(0.002f))
+                          .add(box({-1, 0, -1}, {1, 1, 1}), glass(0))
+                          .add(sun({0, -1, 0}, 1000))
+                          .build();
+  const Samples found =
+      mean_of(picture_of(scene, camera_at({0, 0.6f, 0.5f}, {0, 0.1f, 0}, 0.5f), "path", 512));
+  const double expected = 0.002 / std::numbers::pi * 1000 * (1 - reflectance(1)) / (1.5 * 1.5);
+  EXPECT_LT(detectable_bias(found.standard_error(), 1e-3), coarsening * 0.01 * expected);
+  EXPECT_NEAR(found.mean(), expected, coarsening * 0.01 * expected);
+}
+
 // A mirror shows the floor a second lamp.
 TEST(Caustics, LampBesideAMirror) {
   const Scene scene = SceneBuilder()
