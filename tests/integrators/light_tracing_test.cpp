@@ -194,7 +194,7 @@ View foggy() {
   view.name = "foggy";
   view.scene.add(parallelogram({-1, 1.8f, -1}, {0.8f, 0, 0}, {0, 0, 0.8f}), emitter(3));
   view.fog = {0.3f, {0.9f, 0.7f, 0.5f}, 0.5f, 4};
-  view.resolution = 0.05;
+  view.resolution = 0.08;
   return view;
 }
 
@@ -202,7 +202,8 @@ View foggy() {
 View misty_sky() {
   View view = sky();
   view.name = "misty sky";
-  view.fog = {0.2f, Rgb(0.9f), -0.3f, 5};
+  view.fog = {0.3f, Rgb(0.9f), -0.3f, 2.5f};
+  view.resolution = 0.15;
   return view;
 }
 
