@@ -26,6 +26,7 @@ Bounds bounds_of(const MeshDescription& mesh) {
 
 std::vector<Vec3d> corners_of(const Bounds& box) {
   std::vector<Vec3d> corners;
+  corners.reserve(8);
   for (int i = 0; i < 8; ++i)
     corners.emplace_back(i & 1 ? box.upper.x : box.lower.x, i & 2 ? box.upper.y : box.lower.y,
                          i & 4 ? box.upper.z : box.lower.z);
