@@ -32,11 +32,11 @@ class CausticsFlag : public testing::Test {
                                        .add(lamp)
                                        .description()));
   }
-  ProcessResult render(const std::string& output, std::vector<std::string> more) {
+  ProcessResult render(const std::string& output, std::vector<std::string> more, const char* spp = "16") {
     const std::vector<std::string> all{"render",      scene_,    "-o",      folder_.file(output),
                                        "--look-from", "0,0.6,3", "--size",  "32x24",
                                        "--look-at",   "0,0,0",   "--env",   "none",
-                                       "--spp",       "16",      "--fov",   "30",
+                                       "--spp",       spp,       "--fov",   "30",
                                        "--progress",  "none",    "--stats", folder_.file("stats.json")};
     more.insert(more.begin(), all.begin(), all.end());
     return run_vernier(more);
@@ -62,7 +62,7 @@ TEST_F(CausticsFlag, BringWhatIsMissingWithout) {
 
 TEST_F(CausticsFlag, AreTheSameFromACheckpoint) {
   ASSERT_EQ(render("whole.exr", {}).exit_code, 0);
-  ASSERT_EQ(render("first.exr", {"--spp", "5", "--checkpoint", folder_.file("a.ckpt")}).exit_code, 0);
+  ASSERT_EQ(render("first.exr", {"--checkpoint", folder_.file("a.ckpt")}, "5").exit_code, 0);
   const ProcessResult resumed = render("resumed.exr", {"--resume", folder_.file("a.ckpt")});
   ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
   EXPECT_TRUE(read_file(folder_.file("whole.exr")) == read_file(folder_.file("resumed.exr")));
