@@ -38,7 +38,6 @@ struct Estimate {
   /// `radiance` then leaves out; only with IntegratorOptions::background_apart.
   Rgb background{0, 0, 0};
   bool met_surface = false;  ///< by the camera ray
-  LightParts parts;          ///< of `radiance`, where SampleContext::sorter asks for them
 };
 
 /// Which paths from lights bring light to a picture, beside what the integrator's camera samples find.
@@ -54,6 +53,7 @@ struct SampleContext {
   /// noise far below it is not worth much effort. The mean does not depend on it.
   float spread = 0;
   const LightSorter* sorter = nullptr;  ///< keeps light apart; null: nobody asks
+  LightParts* parts = nullptr;          ///< where the parts of Estimate::radiance are added then
   bool has_caustics = false;            ///< LightPathKind::caustics are followed beside it
 };
 
@@ -75,7 +75,7 @@ struct IntegratorEntry {
   std::string_view name;
   std::string_view description;
   std::unique_ptr<Integrator> (*make)(const IntegratorOptions&);
-  bool splits_light = false;  ///< fills Estimate::parts
+  bool splits_light = false;  ///< adds to SampleContext::parts
 };
 
 /// All integrators (integrators/registry.cpp).

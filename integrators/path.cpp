@@ -32,14 +32,12 @@ class PathIntegrator : public Integrator {
     ++out.rays.camera;
 
     for (int vertex = 1, depth = 1;; ++vertex) {  // depth: of light that the ray meets
-      std::optional<ScatteringStretch> scattering;
       const Stretch stretch =
           scene.volumes().stretch(segment.media, segment.ray, 0, hit ? hit->t : segment.ray.t_max);
       if (stretch.medium.scatters()) {
-        scattering.emplace(scene, segment, stretch, hit, throughput);
         sampler.start_block(medium_blocks + uint32_t(vertex));
-        add_lit(out, *scattering, {scene, segment, throughput, depth, route, view}, context, sampler);
-        throughput *= scattering->sample(sampler.next1_fine(), hit);
+        throughput *=
+            scatter(out, {scene, segment, stretch, throughput, depth, route, view}, hit, context, sampler);
       } else {
         throughput *= transmittance(stretch);
       }
@@ -51,7 +49,7 @@ class PathIntegrator : public Integrator {
       const bool in_medium = hit && hit->is_in_medium();
       if (!in_medium)
         add(out, depth, throughput * met_emission(scene, last, segment.ray, hit),
-            {context.sorter, route, source_of(hit)});
+            {context, route, source_of(hit)});
       if (!hit) break;
 
       sampler.start_block(uint32_t(vertex));
@@ -76,14 +74,11 @@ class PathIntegrator : public Integrator {
       if (!in_medium) ++depth;
       const Shading surface = shade(scene, *hit, -segment.ray.direction, throughput);
       looks_through = looks_through && is_clear(surface);
-      const bool may_be_lit = !in_medium || stretch.medium.sees_lights;
-      if (options_.light_sampling != LightSampling::bsdf && may_be_lit)
+      if (options_.light_sampling != LightSampling::bsdf && !in_medium)
         if (const auto light = scene.sample_light(*hit, light_choice, light_point);
             light && !(looks_through && will_be_met(*light, surface)))
-          add_direct(out,
-                     {scene, *hit, surface, in_medium ? throughput * scattering->weight(*light) : throughput,
-                      depth, route, view},
-                     *light, context, shadow_roulette);
+          add_direct(out, {scene, *hit, surface, throughput, depth, route, view}, *light, context,
+                     shadow_roulette);
       const auto next = surface.sample(lobe_choice, direction);
       if (!next) break;
       if (context.sorter) route = route.scattered(surface, next->wi, next->is_delta, next->is_straight);
@@ -148,6 +143,7 @@ class PathIntegrator : public Integrator {
   struct Way {
     const Scene& scene;
     const Segment& segment;
+    const Stretch& stretch;
     Rgb throughput;
     int depth;  ///< of light that it meets
     const LightRoute& route;
@@ -156,7 +152,7 @@ class PathIntegrator : public Integrator {
 
   /// How light came, for who keeps it apart.
   struct Origin {
-    const LightSorter* sorter;
+    const SampleContext& context;
     const LightRoute& route;
     LightSource source;
   };
@@ -167,8 +163,8 @@ class PathIntegrator : public Integrator {
   /// Light of a path of `depth` vertices after the camera, its source included.
   void add(Estimate& out, int depth, const Rgb& radiance, const Origin& origin) const {
     (depth <= options_.max_depth ? out.radiance : out.missing.depth) += radiance;
-    if (origin.sorter && depth <= options_.max_depth)
-      origin.sorter->add(out.parts, radiance, origin.route, origin.source);
+    if (const auto& to = origin.context; to.sorter && depth <= options_.max_depth)
+      to.sorter->add(*to.parts, radiance, origin.route, origin.source);
   }
 
   /// Emission met by a ray, weighted against next-event estimation: area lights and environment alike.
@@ -201,8 +197,8 @@ class PathIntegrator : public Integrator {
   }
 
   /// Next-event estimation: light from one sampled light, weighted against the BSDF's own sampling.
-  void add_direct(Estimate& out, const Vertex& vertex, const LightSample& light, const SampleContext& context,
-                  float roulette) const {
+  [[gnu::always_inline]] void add_direct(Estimate& out, const Vertex& vertex, const LightSample& light,
+                                         const SampleContext& context, float roulette) const {
     const BsdfEval scattered = vertex.surface.eval(light.wi);
     if (is_black(scattered.f_cos)) return;
     const bool only_sampled = light.is_delta || options_.light_sampling == LightSampling::light;
@@ -217,23 +213,41 @@ class PathIntegrator : public Integrator {
     if (!passage.is_bent) {
       const LightRoute route =
           context.sorter ? vertex.route.scattered(vertex.surface, light.wi, false, false) : vertex.route;
-      add(out, vertex.depth + passage.surfaces, radiance, {context.sorter, route, light.source});
+      add(out, vertex.depth + passage.surfaces, radiance, {context, route, light.source});
     } else if (light.is_delta && !(context.has_caustics && passage.is_sharp && !vertex.view.is_sharp)) {
       out.missing.bent += radiance;
     }
   }
 
-  /// Light of a lamp that a scattering medium on the way sends along it, where the lamp shines on it.
-  void add_lit(Estimate& out, const ScatteringStretch& scattering, const Way& way,
-               const SampleContext& context, Sampler& sampler) const {
-    const Vec2f choice = sampler.next2();
-    const float roulette = sampler.next1();
-    if (options_.light_sampling == LightSampling::bsdf) return;
-    const auto lit = scattering.sample_lit(choice.x, choice.y);
-    if (!lit) return;
-    const Shading phase = shade(way.scene, lit->at, -way.segment.ray.direction);
-    add_direct(out, {way.scene, lit->at, phase, way.throughput * lit->weight, way.depth, way.route, way.view},
-               lit->light, context, roulette);
+  /// A scattering medium on the way: adds the light that it sends along it, moves `hit` to where it scatters
+  /// the path, if it does, and returns the weight of what gets there. Kept out of the loop, which most scenes
+  /// go through without.
+  [[gnu::noinline]] Rgb scatter(Estimate& out, const Way& way, std::optional<Interaction>& hit,
+                                const SampleContext& context, Sampler& sampler) const {
+    const Vec2f lit_choice = sampler.next2();
+    const float lit_roulette = sampler.next1();
+    const double distance = sampler.next1_fine();
+    const Vec2d light_point = sampler.next2_fine();
+    const double light_choice = sampler.next1_fine();
+    const float shadow_roulette = sampler.next1();
+
+    ScatteringStretch scattering(way.scene, way.segment, way.stretch, hit, way.throughput);
+    const bool looks_for_light =
+        options_.light_sampling != LightSampling::bsdf && way.stretch.medium.sees_lights;
+    const auto add_at = [&](const Interaction& at, const Rgb& weight, const LightSample& light,
+                            float roulette) {
+      const Shading phase = shade(way.scene, at, -way.segment.ray.direction);
+      add_direct(out, {way.scene, at, phase, way.throughput * weight, way.depth, way.route, way.view}, light,
+                 context, roulette);
+    };
+    if (looks_for_light)
+      if (const auto lit = scattering.sample_lit(lit_choice.x, lit_choice.y))
+        add_at(lit->at, lit->weight, lit->light, lit_roulette);
+    const Rgb weight = scattering.sample(distance, hit);
+    if (looks_for_light && hit && hit->is_in_medium())
+      if (const auto light = way.scene.sample_light(*hit, light_choice, light_point))
+        add_at(*hit, weight * scattering.weight(*light), *light, shadow_roulette);
+    return weight;
   }
 
   /// Of a shadow ray that brings at most `radiance` to a pixel whose samples spread anyway. What roulette

@@ -21,8 +21,9 @@ Vec3f xyz(const Vec4f& v) { return {v.x, v.y, v.z}; }
 
 /// The point of a triangle in the space of its mesh, its vertices known to within rounding of `roundings`
 /// operations on `magnitudes`.
-SurfacePoint point_of(const std::array<Vec3f, 3>& corners, const std::array<Vec3f, 3>& magnitudes,
-                      int roundings, const Vec2f& barycentrics) {
+[[gnu::always_inline]] inline SurfacePoint point_of(const std::array<Vec3f, 3>& corners,
+                                                    const std::array<Vec3f, 3>& magnitudes, int roundings,
+                                                    const Vec2f& barycentrics) {
   const auto& [p0, p1, p2] = corners;
   const auto& [m0, m1, m2] = magnitudes;
   SurfacePoint point;
@@ -44,8 +45,8 @@ SurfacePoint point_of(const std::array<Vec3f, 3>& corners, const std::array<Vec3
 
 /// A point of a mesh that moves. Its vertices take three operations more, which accelerators may do in
 /// another order: hence the double share.
-SurfacePoint moving_point(const MeshDescription& mesh, const Triangle& triangle, const Vec2f& barycentrics,
-                          float time) {
+[[gnu::noinline]] SurfacePoint moving_point(const MeshDescription& mesh, const Triangle& triangle,
+                                            const Vec2f& barycentrics, float time) {
   const auto [first, part] = moments_around(time, mesh.moments.size());
   const MeshShape &from = mesh.moments[first], &to = mesh.moments[first + 1];
   std::array<Vec3f, 3> corners, magnitudes;

@@ -242,7 +242,9 @@ class Renderer {
     const uint32_t index = draw_index(planned, guides);
     const int full_x = crop_.x + x, full_y = crop_.y + y;
     CameraSample sample = camera_samples_.get({full_x, full_y, half, index});
-    const SampleContext context{spread(x, y, half), sorter_, has_caustics_};
+    std::optional<LightParts> parts;
+    if (sorter_) parts.emplace();
+    const SampleContext context{spread(x, y, half), sorter_, parts ? &*parts : nullptr, has_caustics_};
     const Estimate estimate = integrator_.estimate(scene_, sample.ray, sample.sampler, context);
     ++totals.samples;
     totals.rays += estimate.rays;
@@ -257,13 +259,12 @@ class Renderer {
       totals.light.add(estimate);
       if (options_.adaptive) state_.guides[size_t(half)].add(x, y, seen.radiance);
     }
-    if (sorter_) add_parts(planned, estimate, seen);
+    if (parts) add_parts(planned, *parts, max(seen.radiance - estimate.radiance, Rgb(0, 0, 0)));
   }
 
   /// What shows behind the scene is a part too.
-  void add_parts(const Planned& planned, const Estimate& estimate, const FilmSample& seen) {
-    LightParts parts = estimate.parts;
-    sorter_->add(parts, max(seen.radiance - estimate.radiance, Rgb(0, 0, 0)), LightRoute(), LightSource());
+  void add_parts(const Planned& planned, LightParts& parts, const Rgb& behind) {
+    sorter_->add(parts, behind, LightRoute(), LightSource());
     for (size_t i = 0; i < result().light.size(); ++i)
       // Parts of what the film takes are finite and not negative, but for rounding at the end of the range.
       (void)result().light[i].film.add(planned.x, planned.y, planned.half, sorter_->part(parts, i));

@@ -82,8 +82,9 @@ std::vector<Samples> measure_parts(const Scene& scene, const IntegratorOptions& 
       Sampler sampler(uint32_t(pixel), uint32_t(i / (side * side)), 77 + set);
       const int row = pixel / side, column = pixel % side;
       const Ray ray = camera.ray(Vec2f(float(column), float(row)) + sampler.next2());
-      const Estimate estimate = integrator->estimate(scene, ray, sampler, {0, &sorter});
-      for (size_t p = 0; p < count; ++p) sums[set][p] += double(sorter.part(estimate.parts, p).y);
+      LightParts parts;
+      const Estimate estimate = integrator->estimate(scene, ray, sampler, {0, &sorter, &parts});
+      for (size_t p = 0; p < count; ++p) sums[set][p] += double(sorter.part(parts, p).y);
       sums[set][count] += double(estimate.radiance.y);
     }
   });
@@ -188,9 +189,8 @@ LightParts parts_of(const MaterialDescription& material, bool lamp_behind) {
   LightParts sum;
   for (uint32_t i = 0; i < 256; ++i) {
     Sampler sampler(0, i, 1);
-    const Estimate estimate =
-        path({.max_depth = 2})->estimate(scene, ray_through({0, -0.4f, 2}, {0, 0, 0}), sampler, {0, &sorter});
-    for (size_t way = 0; way < light_way_count; ++way) sum.ways[way] += estimate.parts.ways[way];
+    path({.max_depth = 2})
+        ->estimate(scene, ray_through({0, -0.4f, 2}, {0, 0, 0}), sampler, {0, &sorter, &sum});
   }
   return sum;
 }
