@@ -114,8 +114,8 @@ TEST(Caustics, LampBesideAMirror) {
   double expected = 0;
   constexpr int steps = 64;
   for (int i = 0; i < steps * steps; ++i) {
-    const Ray ray =
-        camera.ray({8 * (float(i % steps) + 0.5f) / steps, 8 * (float(i / steps) + 0.5f) / steps});
+    const int column = i % steps, row = i / steps;
+    const Ray ray = camera.ray({8 * (float(column) + 0.5f) / steps, 8 * (float(row) + 0.5f) / steps});
     const Vec3f at = ray.at(-ray.origin.y / ray.direction.y);
     for (const Vec3f& lamp : {Vec3f(0, 1, 0.5f), Vec3f(2, 1, 0.5f)}) {
       const Vec3f to_lamp = lamp - at;
