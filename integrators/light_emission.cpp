@@ -53,7 +53,8 @@ std::vector<float> sharp_light(const Scene& scene, const Light& lamp, uint32_t n
   parallel_for(values.size(), [&](size_t i) {
     Sampler sampler(number, uint32_t(i), 0);
     const Vec2d in_cell(sampler.next2());
-    const Vec2d corner(double(i % size_t(cells)), double(i / size_t(cells)));
+    const size_t column = i % size_t(cells), row = i / size_t(cells);
+    const Vec2d corner{double(column), double(row)};
     const auto light =
         lamp.emit(scene.lit_bounds(), (corner + in_cell) / double(cells), {0.5f, 0.5f}, middle_of_shutter);
     if (light) values[i] = luminance(light->flux) * sharp_part(scene, *light);

@@ -220,8 +220,10 @@ TEST(PixelFilter, SharesAreOfTheDensityOfSamples) {
     for (int cell = 0; cell < cells * pixels; ++cell)
       for (int i = 0; i < steps; ++i) {
         // Positions within the cell, and a number that is even over them.
-        const float at = (float(cell) + (float(i % 40) + 0.5f) / 40) / cells;
-        const auto share = filter.share(at, (float(i / 40) + 0.5f) / (steps / 40));
+        constexpr int places = 40, numbers = steps / places;
+        const int place = i % places, number = i / places;
+        const float at = (float(cell) + (float(place) + 0.5f) / places) / cells;
+        const auto share = filter.share(at, (float(number) + 0.5f) / float(numbers));
         if (share.pixel == 3) shared[size_t(cell)] += double(share.weight) / steps / cells;
       }
     for (size_t cell = 0; cell < sampled.size(); ++cell)

@@ -22,8 +22,8 @@ struct AnimatedFile : GltfFile {
   void animate(int node, const char* path, const std::vector<float>& values, const char* type) {
     const size_t width = std::string(type) == "SCALAR" ? 1 : size_t(type[3] - '0');
     std::vector<float> times;
-    for (size_t i = 0; i < values.size() / width; ++i)
-      times.push_back(float(i) / float(values.size() / width - 1));
+    const size_t count = values.size() / width;
+    for (size_t i = 0; i < count; ++i) times.push_back(float(i) / float(count - 1));
     auto& animation = json["animations"][0];
     animation["channels"].push_back(
         {{"sampler", animation["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});

@@ -421,8 +421,8 @@ TEST(Lights, EmitTheirPower) {
     double sum = 0;
     Random random(i + 1);
     for (int k = 0; k < side * side; ++k) {
-      const Vec2d place((k % side + double(random.next1())) / side,
-                        (k / side + double(random.next1())) / side);
+      const int column = k % side, row = k / side;
+      const Vec2d place((column + double(random.next1())) / side, (row + double(random.next1())) / side);
       const auto ray = light.emit(scene.bounds(), place, random.next2(), middle_of_shutter);
       if (!ray) continue;
       EXPECT_NEAR(length(ray->ray.direction), 1, 1e-5);
