@@ -37,7 +37,7 @@ class PathIntegrator : public Integrator {
       if (stretch.medium.scatters()) {
         sampler.start_block(medium_blocks + uint32_t(vertex));
         throughput *=
-            scatter(out, {scene, segment, stretch, throughput, depth, route, view}, hit, context, sampler);
+            scatter(out, {{scene, throughput, depth, route, view}, segment, stretch}, hit, context, sampler);
       } else {
         throughput *= transmittance(stretch);
       }
@@ -77,7 +77,7 @@ class PathIntegrator : public Integrator {
       if (options_.light_sampling != LightSampling::bsdf && !in_medium)
         if (const auto light = scene.sample_light(*hit, light_choice, light_point);
             light && !(looks_through && will_be_met(*light, surface)))
-          add_direct(out, {scene, *hit, surface, throughput, depth, route, view}, *light, context,
+          add_direct(out, {{scene, throughput, depth, route, view}, *hit, surface}, *light, context,
                      shadow_roulette);
       const auto next = surface.sample(lobe_choice, direction);
       if (!next) break;
@@ -128,26 +128,27 @@ class PathIntegrator : public Integrator {
     }
   };
 
-  /// Where a path may be lit.
-  struct Vertex {
+  /// What a path carries.
+  struct Carried {
     const Scene& scene;
-    const Interaction& at;
-    const Shading& surface;
     Rgb throughput;
     int depth;  ///< of light that it meets
     const LightRoute& route;
     const SharpView& view;
   };
 
+  /// Where a path may be lit.
+  struct Vertex {
+    Carried path;
+    const Interaction& at;
+    const Shading& surface;
+  };
+
   /// A path on its way between vertices.
   struct Way {
-    const Scene& scene;
+    Carried path;
     const Segment& segment;
     const Stretch& stretch;
-    Rgb throughput;
-    int depth;  ///< of light that it meets
-    const LightRoute& route;
-    const SharpView& view;
   };
 
   /// How light came, for who keeps it apart.
@@ -203,18 +204,19 @@ class PathIntegrator : public Integrator {
     if (is_black(scattered.f_cos)) return;
     const bool only_sampled = light.is_delta || options_.light_sampling == LightSampling::light;
     const float weight = only_sampled ? 1 : power_heuristic(light.pdf, scattered.pdf);
-    Rgb radiance = vertex.throughput * light.radiance * scattered.f_cos * (weight / light.pdf);
+    Rgb radiance = vertex.path.throughput * light.radiance * scattered.f_cos * (weight / light.pdf);
     const float survival = shadow_survival_probability(radiance, context.spread);
     if (roulette >= survival) return;
     ++out.rays.shadow;
-    const Passage passage = transmittance(vertex.scene, vertex.at.spawn_to(light));
+    const Passage passage = transmittance(vertex.path.scene, vertex.at.spawn_to(light));
     if (is_black(passage.fraction)) return;
     radiance *= passage.fraction / survival;
     if (!passage.is_bent) {
-      const LightRoute route =
-          context.sorter ? vertex.route.scattered(vertex.surface, light.wi, false, false) : vertex.route;
-      add(out, vertex.depth + passage.surfaces, radiance, {context, route, light.source});
-    } else if (light.is_delta && !(context.has_caustics && passage.is_sharp && !vertex.view.is_sharp)) {
+      const LightRoute route = context.sorter
+                                   ? vertex.path.route.scattered(vertex.surface, light.wi, false, false)
+                                   : vertex.path.route;
+      add(out, vertex.path.depth + passage.surfaces, radiance, {context, route, light.source});
+    } else if (light.is_delta && !(context.has_caustics && passage.is_sharp && !vertex.path.view.is_sharp)) {
       out.missing.bent += radiance;
     }
   }
@@ -231,21 +233,22 @@ class PathIntegrator : public Integrator {
     const double light_choice = sampler.next1_fine();
     const float shadow_roulette = sampler.next1();
 
-    ScatteringStretch scattering(way.scene, way.segment, way.stretch, hit, way.throughput);
+    const Carried& path = way.path;
+    ScatteringStretch scattering(path.scene, way.segment, way.stretch, hit, path.throughput);
     const bool looks_for_light =
         options_.light_sampling != LightSampling::bsdf && way.stretch.medium.sees_lights;
     const auto add_at = [&](const Interaction& at, const Rgb& weight, const LightSample& light,
                             float roulette) {
-      const Shading phase = shade(way.scene, at, -way.segment.ray.direction);
-      add_direct(out, {way.scene, at, phase, way.throughput * weight, way.depth, way.route, way.view}, light,
-                 context, roulette);
+      const Shading phase = shade(path.scene, at, -way.segment.ray.direction);
+      add_direct(out, {{path.scene, path.throughput * weight, path.depth, path.route, path.view}, at, phase},
+                 light, context, roulette);
     };
     if (looks_for_light)
       if (const auto lit = scattering.sample_lit(lit_choice.x, lit_choice.y))
         add_at(lit->at, lit->weight, lit->light, lit_roulette);
     const Rgb weight = scattering.sample(distance, hit);
     if (looks_for_light && hit && hit->is_in_medium())
-      if (const auto light = way.scene.sample_light(*hit, light_choice, light_point))
+      if (const auto light = path.scene.sample_light(*hit, light_choice, light_point))
         add_at(*hit, weight * scattering.weight(*light), *light, shadow_roulette);
     return weight;
   }

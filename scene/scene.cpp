@@ -177,6 +177,10 @@ void Scene::fill_air(const Fog& fog) {
     refuse("an anisotropy of", fmt::format("{}", fog.anisotropy), "-1 to 1");
   if (!(fog.radius >= 0) || !std::isfinite(fog.radius))
     refuse("a radius of", fmt::format("{}", fog.radius), "0 or more metres");
+  if (fog.density > 0 && ground_light_)
+    throw Error(ErrorKind::usage, {}, "fog",
+                "ground that shows its shadow alone has none to show in fog; leave out one of both, or use "
+                "ground matte");
   fog_ = fog;
   if (fog_.radius == 0) fog_.radius = 4 * bounds().radius();
   const Rgb extinction(fog_.density);

@@ -64,6 +64,11 @@ class VolumeSet {
 
   /// No surface bounds a volume.
   bool empty() const { return media_.empty(); }
+  /// Some medium scatters light.
+  bool scatter() const {
+    const auto scatters = [](const Medium& medium) { return medium.scatters(); };
+    return air_.scatters() || std::any_of(media_.begin(), media_.end(), scatters);
+  }
   /// There is nothing anywhere but empty air.
   bool are_clear() const { return empty() && !air_fills_; }
   /// Number of the volume that the instance bounds; MediumStack::air for others.

@@ -61,12 +61,12 @@ PosedScene::PosedScene(const RenderFlags& flags, const RunPlan& plan, SceneDescr
   report_.build_seconds = watch.lap();
   if (const Fog fog = parse_fog(flags.fog); fog.density > 0) {
     scene_->fill_air(fog);
-    log.add(
-        {Notice::Severity::info,
-         {},
-         fmt::format("fog fills a ball of {:.3g} m about the scene{}", scene_->fog().radius,
-                     flags.integrator == "whitted" ? "; whitted lets it dim light, and scatters none" : "")});
+    log.add({Notice::Severity::info,
+             {},
+             fmt::format("fog fills a ball of {:.3g} m about the scene", scene_->fog().radius)});
   }
+  if (flags.integrator == "whitted" && scene_->volumes().scatter())
+    log.add({Notice::Severity::info, {}, "whitted lets fog and other media dim light, and scatters none"});
   report_.accelerator = scene_->accelerator_name();
   report_.accelerator_stats = scene_->accelerator().stats();
 }

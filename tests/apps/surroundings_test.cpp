@@ -125,7 +125,11 @@ TEST(Surroundings, FogFillsTheAirAndSaysHowFar) {
   EXPECT_LT(mean(foggy.picture), 0.1 * clear);
   EXPECT_THAT(foggy.result.err, HasSubstr("fog fills a ball of 3 m"));
   EXPECT_THAT(rendered(folder, scene, {"--env", "sky", "--fog", "0.1", "--integrator", "whitted"}).result.err,
-              HasSubstr("scatters none"));
+              HasSubstr("and scatters none"));
+  const ProcessResult shadow =
+      rendered(folder, scene, {"--env", "sky", "--fog", "0.1", "--ground", "shadow", "--transparent"}).result;
+  EXPECT_EQ(shadow.exit_code, 2) << shadow.err;
+  EXPECT_THAT(shadow.err, HasSubstr("none to show in fog"));
   for (const char* wrong : {"x", "-1", "0.1,foo", "0.1,2", "0.1,1,2", "0.1,1,0,0", "1,1,0,1,1", "nan"}) {
     const ProcessResult result = rendered(folder, scene, {"--fog", wrong}).result;
     EXPECT_EQ(result.exit_code, 2) << wrong;

@@ -168,12 +168,12 @@ TEST(Caustics, AsOfASmallLamp) {
           pixels_of(picture_of(large_lamp, under_the_body, "path", 8 * spp), 16, 1000 * seed),
           pixels_of(picture_of(large_lamp, under_the_body, "light", spp), 16, 1000 * seed + 500));
     })) << body.name;
-    const Samples small_mean = mean_of(picture_of(small_lamp, under_the_body, "light", 2048));
-    const Samples lamp_mean = mean_of(picture_of(lamp, under_the_body, "path", 512));
+    const Samples small_mean = mean_of(picture_of(small_lamp, under_the_body, "light", 3072));
+    const Samples lamp_mean = mean_of(picture_of(lamp, under_the_body, "path", 768));
     // What is left of its size is in proportion to its square.
-    EXPECT_NEAR(lamp_mean.mean(), small_mean.mean(), coarsening * 0.025 * small_mean.mean()) << body.name;
+    EXPECT_NEAR(lamp_mean.mean(), small_mean.mean(), coarsening * 0.02 * small_mean.mean()) << body.name;
     EXPECT_LT(detectable_bias(std::hypot(lamp_mean.standard_error(), small_mean.standard_error()), 1e-3),
-              coarsening * 0.025 * small_mean.mean())
+              coarsening * 0.02 * small_mean.mean())
         << body.name;
   }
 }

@@ -25,7 +25,7 @@ CASES = {
     "light in parts": ("night_room", {"spp": 4, "light_ways": ["diffuse_direct", "emission"],
                                       "light_groups": {"key": ["lamp"]}},
                        ["--spp", "4", "--light-groups", "key=lamp"]),
-    "fog": ("night_room", {"spp": 4, "fog": vernier.Fog(0.05, (0.5, 0.5, 0.5), 0.3, 20.0)},
+    "fog": ("night_room", {"spp": 4, "fog": vernier.Fog(0.05, [0.5, 0.5, 0.5], 0.3, 20.0)},
             ["--spp", "4", "--fog", "0.05,0.5,0.3,20"]),
     "raycast": ("two_spheres", {"spp": 2, "integrator": "raycast", "show": "depth"},
                 ["--spp", "2", "--integrator", "raycast", "--show", "depth"]),

@@ -53,12 +53,16 @@ class Fog:
 
     density: float
     """Per metre: part of the light that a short way takes, over its length."""
-    albedo: float | tuple[float, float, float] = 1.0
-    """Part of it that is scattered rather than absorbed, 0 to 1, scene-linear."""
+    albedo: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    """Part of it that is scattered rather than absorbed, 0 to 1, scene-linear; a number stands for all three."""
     anisotropy: float = 0.0
     """Mean cosine of the deflection, in (-1, 1)."""
     radius: float = 0.0
     """Metres, of the ball about the scene's center that it fills; 0: four times the scene's."""
+
+    def __post_init__(self) -> None:
+        albedo = np.broadcast_to(np.asarray(self.albedo, float), 3)  # which must be one number or three
+        object.__setattr__(self, "albedo", tuple(map(float, albedo)))
 
 
 class Kind(NamedTuple):
@@ -161,8 +165,7 @@ class Scene:
             built = _core.BuiltScene(self._file, reading.variant, reading.time, reading.shutter, reading.animation,
                                      reading.strict, kind.ground, kind.accelerator)
         if fog := kind.fog:
-            albedo = fog.albedo if isinstance(fog.albedo, tuple) else (fog.albedo,) * 3
-            built.fill_air(fog.density, albedo, fog.anisotropy, fog.radius)
+            built.fill_air(fog.density, fog.albedo, fog.anisotropy, fog.radius)
         return built
 
     def _add_slot(self, kind: Kind) -> _Slot:
