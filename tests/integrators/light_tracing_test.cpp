@@ -73,22 +73,11 @@ View sky() {
                      .environment([](const Vec3f& w) { return 0.2f + 3 * std::max(0.f, w.x * w.x * w.x); })};
 }
 
-/// Emission, coverage and its absence by textures, on both sides.
 View flame_card(AlphaMode mode) {
-  MaterialDescription flame = emitter(4);
-  flame.alpha_mode = mode;
-  flame.double_sided = true;
-  flame.base_color = {0, 0, 0, 0.9f};
-  flame.base_color_texture.texture = 0;
-  MaterialDescription veil = emitter(2);
-  veil.alpha_mode = AlphaMode::blend;
-  veil.base_color = {0, 0, 0, 0.25f};
-  return {mode == AlphaMode::mask ? "flame card, MASK" : "flame card, BLEND",
-          SceneBuilder()
-              .alpha_texture(4, 4, {0, 255, 90, 0, 200, 255, 255, 30, 140, 255, 255, 160, 20, 120, 130, 0})
-              .add(floor_mesh(), grey(plastic(0.5f), 0.6f))
-              .add(parallelogram({-1, 0.1f, -1}, {2, 0, 0}, {0, 1.5f, 0.3f}), flame)
-              .add(parallelogram({-1, 1.8f, -1}, {2, 0, 0}, {0, 0, 1.5f}), veil)};
+  SceneBuilder builder;
+  builder.add(floor_mesh(), grey(plastic(0.5f), 0.6f));
+  add_flame_cards(builder, mode);
+  return {mode == AlphaMode::mask ? "flame card, MASK" : "flame card, BLEND", builder};
 }
 View flame_card_mask() { return flame_card(AlphaMode::mask); }
 View flame_card_blend() { return flame_card(AlphaMode::blend); }

@@ -140,6 +140,20 @@ SceneBuilder& SceneBuilder::environment(const std::function<float(const Vec3f&)>
 
 Scene SceneBuilder::build(const std::string& accelerator) { return Scene(description_, {accelerator}); }
 
+void add_flame_cards(SceneBuilder& builder, AlphaMode mode) {
+  MaterialDescription flame = emitter(4);
+  flame.alpha_mode = mode;
+  flame.double_sided = true;
+  flame.base_color = {0, 0, 0, 0.9f};
+  flame.base_color_texture.texture = 0;
+  MaterialDescription veil = emitter(2);
+  veil.alpha_mode = AlphaMode::blend;
+  veil.base_color = {0, 0, 0, 0.25f};
+  builder.alpha_texture(4, 4, {0, 255, 90, 0, 200, 255, 255, 30, 140, 255, 255, 160, 20, 120, 130, 0})
+      .add(parallelogram({-1, 0.1f, -1}, {2, 0, 0}, {0, 1.5f, 0.3f}), flame)
+      .add(parallelogram({-1, 1.8f, -1}, {2, 0, 0}, {0, 0, 1.5f}), veil);
+}
+
 std::unique_ptr<Integrator> path(const IntegratorOptions& options) {
   return make_integrator("path", options);
 }

@@ -51,6 +51,9 @@ class SceneBuilder {
   SceneDescription description_;
 };
 
+/// Flames on cards, the first texture of the scene: what it leaves open neither glows nor hides.
+void add_flame_cards(SceneBuilder& builder, AlphaMode mode);
+
 /// The path integrator.
 std::unique_ptr<Integrator> path(const IntegratorOptions& options);
 
