@@ -16,6 +16,8 @@
 
 namespace vernier {
 
+class SmallLamps;
+
 /// Light that a sample knows of and leaves out, in the unit of its radiance.
 struct MissingLight {
   Rgb bent{0, 0, 0};   ///< of lamps, through glass that bends it: at most this much arrives on other ways
@@ -55,6 +57,8 @@ struct SampleContext {
   const LightSorter* sorter = nullptr;  ///< keeps light apart; null: nobody asks
   LightParts* parts = nullptr;          ///< where the parts of Estimate::radiance are added then
   bool has_caustics = false;            ///< LightPathKind::caustics are followed beside it
+  /// Whose light to the camera is brought beside it; null: none's.
+  const SmallLamps* small_lamps = nullptr;
 };
 
 /// A way to estimate the light along a camera ray. Immutable while rendering; called from many threads.
@@ -68,6 +72,8 @@ class Integrator {
 
   /// What a picture of the scene needs beside camera samples.
   virtual LightPathKind light_paths(const Scene& /*scene*/) const { return LightPathKind::none; }
+  /// Whether it leaves out what SampleContext::small_lamps bring.
+  virtual bool leaves_small_lamps() const { return false; }
 };
 
 /// One line of the table of integrators.

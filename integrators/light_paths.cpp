@@ -12,7 +12,11 @@ namespace {
 /// Paths of one stream of the sampler, whose indices have 32 bits.
 constexpr int stream_bits = 24;
 
-LightEmission emission_of(const Scene& scene, LightPathKind kind) {
+/// The block of the sampler whose numbers show a small lamp: beyond those of vertices and media.
+constexpr uint32_t small_lamp_block = 1u << 21;
+
+std::optional<LightEmission> emission_of(const Scene& scene, LightPathKind kind) {
+  if (kind == LightPathKind::none) return std::nullopt;
   return kind == LightPathKind::all ? LightEmission::of_all(scene) : LightEmission::of_lamps(scene);
 }
 
@@ -45,13 +49,14 @@ struct LightPaths::Walk {
 };
 
 LightPaths::LightPaths(const Scene& scene, const Camera& camera, const RenderSettings& settings,
-                       LightPathKind kind, const LightSorter* sorter)
+                       LightPathKind kind, SmallLamps small_lamps, const LightSorter* sorter)
     : scene_(scene),
       camera_(camera),
       kind_(kind),
       sorter_(sorter),
       options_(settings.integrator_options),
       emission_(emission_of(scene, kind)),
+      small_lamps_(std::move(small_lamps)),
       filter_(settings.filter),
       crop_(rendered_part(settings)),
       has_times_(camera.moves() || scene.moves()),
@@ -60,16 +65,24 @@ LightPaths::LightPaths(const Scene& scene, const Camera& camera, const RenderSet
       filter_reach_(settings.filter.width),
       seed_(settings.seed) {}
 
+uint64_t LightPaths::paths_per_sample() const {
+  const uint64_t pixels = uint64_t(width_) * uint64_t(height_);
+  return emission_ ? pixels : small_lamps_.paths_per_sample();
+}
+
 void LightPaths::trace(const Id& id, Caught& caught) const {
   // No picture has that many pixels: camera samples have other streams.
   const uint32_t stream = ~uint32_t(id.index >> stream_bits);
   const auto index = uint32_t(id.index & ((uint64_t{1} << stream_bits) - 1));
   Walk walk{Sampler(stream, index, 2 * seed_ + uint64_t(id.half)), caught, caught.splats.size()};
-  const double choice = walk.sampler.next1_fine();
-  const Vec2d place = walk.sampler.next2_fine();
-  const Vec2f direction = walk.sampler.next2();
-  const float time = has_times_ ? walk.sampler.next1() : middle_of_shutter;
-  if (const auto emitted = emission_.sample(choice, place, direction, time)) follow(walk, *emitted);
+  if (emission_) {
+    const double choice = walk.sampler.next1_fine();
+    const Vec2d place = walk.sampler.next2_fine();
+    const Vec2f direction = walk.sampler.next2();
+    const float time = has_times_ ? walk.sampler.next1() : middle_of_shutter;
+    if (const auto emitted = emission_->sample(choice, place, direction, time)) follow(walk, *emitted);
+  }
+  if (small_lamps_.size() > 0) show_small_lamp(walk);
   for (size_t i = walk.first_splat; i < caught.splats.size(); ++i) {
     const Rgb& radiance = caught.splats[i].radiance;
     const float smallest = std::min(radiance.x, std::min(radiance.y, radiance.z));
@@ -79,6 +92,32 @@ void LightPaths::trace(const Id& id, Caught& caught) const {
     ++caught.rejected;
     break;
   }
+}
+
+/// What the camera sees of a small lamp straight, with nothing in between that it looks through.
+void LightPaths::show_small_lamp(Walk& walk) const {
+  walk.sampler.start_block(small_lamp_block);
+  const double choice = walk.sampler.next1_fine();
+  const Vec2f place = walk.sampler.next2(), on_lens = walk.sampler.next2(), in_pixel = walk.sampler.next2();
+  SmallLamps::Sample lamp = small_lamps_.sample(choice, place);
+  if (has_times_) lamp.at.time = walk.sampler.next1();
+  const auto view = view_of(lamp.at, on_lens, in_pixel);
+  if (!view) return;
+  lamp.at.front = dot(view->to_camera, lamp.at.ng) > 0;
+  const Rgb emitted =
+      scene_.emitted(nullptr, Ray{view->sight.origin, 0, -view->to_camera}, &lamp.at).radiance;
+  if (is_black(emitted)) return;
+  ++walk.caught.rays.shadow;
+  Interaction at;
+  static_cast<SurfacePoint&>(at) = lamp.at;
+  const Passage passage = sightline(at, view->sight, view->to_camera);
+  if (is_black(passage.fraction) || passage.surfaces > 0) return;
+  const float pixels = lamp.area * std::abs(dot(view->to_camera, lamp.at.ng)) * view->sight.area;
+  const Rgb radiance = emitted * passage.fraction * (pixels * view->pixel.weight);
+  add(walk, view->pixel, radiance);
+  if (sorter_)
+    sorter_->add(walk.caught.parts.back(), radiance, LightRoute(),
+                 {LightSource::Kind::instance, lamp.at.instance});
 }
 
 void LightPaths::follow(Walk& walk, const LightEmission::Ray& emitted) const {
@@ -165,29 +204,35 @@ Rgb LightPaths::carried_on(const Interaction& at, const Vec3f& to_light, const S
 /// Light that arrives at a surface and is scattered straight to the camera.
 void LightPaths::connect(Walk& walk, const Interaction& at, const Vec3f& to_light, const Rgb& flux) const {
   if (options_.background_apart && scene_.catches_shadow(at)) return;  // there the camera sees the shadow
-  const auto sight =
-      camera_.sight(at.position, camera_.has_lens() ? sample_disk(walk.lens) : Vec2f(0, 0), at.time);
-  if (!sight) return;
-  const auto pixel = pixel_at(sight->raster, walk.pixel);
-  if (!pixel) return;
-  const Vec3f offset = sight->origin - at.position;
-  if (!(length_squared(offset) > 0)) return;
-  const Vec3f to_camera = normalize(offset);
+  const auto view = view_of(at, walk.lens, walk.pixel);
+  if (!view) return;
+  const auto& [sight, to_camera, pixel] = *view;
   const Shading surface = shade(scene_, met_from(at, to_camera), to_camera, flux);
   const Rgb scattered = surface.eval(to_light).f_cos;
   if (is_black(scattered)) return;
   ++walk.caught.rays.shadow;
-  const Passage passage = sightline(at, *sight, to_camera);
+  const Passage passage = sightline(at, sight, to_camera);
   if (is_black(passage.fraction) || walk.depth + passage.surfaces > options_.max_depth) return;
   const float cosines =
       at.is_in_medium() ? 1 : std::abs(dot(to_camera, at.ng)) / std::abs(dot(to_light, at.ng));
-  const Rgb radiance = flux * scattered * passage.fraction * (cosines * sight->area * pixel->weight);
+  const Rgb radiance = flux * scattered * passage.fraction * (cosines * sight.area * pixel.weight);
   if (is_black(radiance)) return;
-  add(walk, *pixel, radiance);
+  add(walk, pixel, radiance);
   if (!sorter_) return;
   LightRoute route = LightRoute().scattered(surface, to_light, false, false);
   if (walk.scatterings > 0) route = route.scattered(surface, to_light, false, false);
   sorter_->add(walk.caught.parts.back(), radiance, route, walk.source);
+}
+
+std::optional<LightPaths::View> LightPaths::view_of(const SurfacePoint& at, const Vec2f& on_lens,
+                                                    const Vec2f& in_pixel) const {
+  const auto sight =
+      camera_.sight(at.position, camera_.has_lens() ? sample_disk(on_lens) : Vec2f(0, 0), at.time);
+  if (!sight) return std::nullopt;
+  const auto pixel = pixel_at(sight->raster, in_pixel);
+  const Vec3f offset = sight->origin - at.position;
+  if (!pixel || !(length_squared(offset) > 0)) return std::nullopt;
+  return View{*sight, normalize(offset), *pixel};
 }
 
 /// How the camera sees a surface: along the ray that it would send there, straight through what does not bend
@@ -263,9 +308,13 @@ std::optional<LightPaths> light_paths_of(const Scene& scene, const Camera& camer
                                          const Integrator& integrator, const RenderSettings& settings,
                                          const LightSorter& sorter) {
   const LightPathKind kind = integrator.light_paths(scene);
+  SmallLamps small_lamps;
+  if (integrator.leaves_small_lamps())
+    small_lamps = SmallLamps(scene, camera, settings.width, settings.height);
   std::optional<LightPaths> paths;
-  if (kind != LightPathKind::none)
-    paths.emplace(scene, camera, settings, kind, sorter.is_empty() ? nullptr : &sorter);
+  if (kind != LightPathKind::none || small_lamps.size() > 0)
+    paths.emplace(scene, camera, settings, kind, std::move(small_lamps),
+                  sorter.is_empty() ? nullptr : &sorter);
   return paths;
 }
 

@@ -8,6 +8,7 @@
 #include "integrators/integrator.h"
 #include "integrators/light_emission.h"
 #include "integrators/render/pixel_filter.h"
+#include "integrators/small_lamps.h"
 #include "scene/camera.h"
 #include "scene/segment.h"
 
@@ -34,9 +35,10 @@ struct Caught {
 /// along paths from the camera.
 class LightPaths {
  public:
-  /// All must live as long; `sorter` may be null.
+  /// All must live as long; `sorter` may be null. Of LightPathKind::none there are paths of small lamps
+  /// alone.
   LightPaths(const Scene& scene, const Camera& camera, const RenderSettings& settings, LightPathKind kind,
-             const LightSorter* sorter = nullptr);
+             SmallLamps small_lamps = {}, const LightSorter* sorter = nullptr);
 
   /// Names a light path: its number among those of one half.
   struct Id {
@@ -47,6 +49,10 @@ class LightPaths {
   void trace(const Id& id, Caught& caught) const;
 
   LightPathKind kind() const { return kind_; }
+  /// What they show of them to the camera; null: there are none.
+  const SmallLamps* small_lamps() const { return small_lamps_.size() > 0 ? &small_lamps_ : nullptr; }
+  /// So many light paths go with one camera sample of each pixel of the whole picture.
+  uint64_t paths_per_sample() const;
 
  private:
   struct Walk;
@@ -55,11 +61,20 @@ class LightPaths {
     float weight;
   };
 
+  /// How the camera sees a point, along which ray and in which pixel.
+  struct View {
+    Camera::Sight sight;
+    Vec3f to_camera;  ///< unit
+    Pixel pixel;
+  };
+
+  void show_small_lamp(Walk& walk) const;
   void follow(Walk& walk, const LightEmission::Ray& emitted) const;
   std::optional<Interaction> next_vertex(Walk& walk, const Segment& segment, int vertex, Rgb& flux) const;
   void connect(Walk& walk, const Interaction& at, const Vec3f& to_light, const Rgb& flux) const;
   Rgb carried_on(const Interaction& at, const Vec3f& to_light, const Shading& lit, const ShadingSample& next,
                  const Rgb& flux) const;
+  std::optional<View> view_of(const SurfacePoint& at, const Vec2f& on_lens, const Vec2f& in_pixel) const;
   Passage sightline(const Interaction& at, const Camera::Sight& sight, const Vec3f& to_camera) const;
   std::optional<Pixel> pixel_at(Vec2f raster, const Vec2f& u) const;
   void add(Walk& walk, const Pixel& pixel, const Rgb& radiance) const;
@@ -69,7 +84,8 @@ class LightPaths {
   const LightPathKind kind_;
   const LightSorter* sorter_;
   const IntegratorOptions options_;
-  const LightEmission emission_;
+  const std::optional<LightEmission> emission_;  ///< empty: no path goes on from a light
+  const SmallLamps small_lamps_;
   const FilterSampler filter_;
   const Crop crop_;
   const bool has_times_;  ///< something moves while the shutter is open

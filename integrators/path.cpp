@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrators/light_emission.h"
 #include "integrators/scattering_stretch.h"
+#include "integrators/small_lamps.h"
 
 namespace vernier {
 namespace {
@@ -48,8 +49,9 @@ class PathIntegrator : public Integrator {
       }
       const bool in_medium = hit && hit->is_in_medium();
       if (!in_medium)
-        add(out, depth, throughput * met_emission(scene, last, segment.ray, hit),
-            {context, route, source_of(hit)});
+        if (vertex > 1 || !hit || !is_brought(context, *hit))
+          add(out, depth, throughput * met_emission(scene, last, segment.ray, hit),
+              {context, route, source_of(hit)});
       if (!hit) break;
 
       sampler.start_block(uint32_t(vertex));
@@ -100,6 +102,7 @@ class PathIntegrator : public Integrator {
     return out;
   }
 
+  bool leaves_small_lamps() const override { return true; }
   LightPathKind light_paths(const Scene& scene) const override {
     const bool follows = options_.caustics == Caustics::on ||
                          (options_.caustics == Caustics::automatic && casts_caustics(scene));
@@ -166,6 +169,11 @@ class PathIntegrator : public Integrator {
     (depth <= options_.max_depth ? out.radiance : out.missing.depth) += radiance;
     if (const auto& to = origin.context; to.sorter && depth <= options_.max_depth)
       to.sorter->add(*to.parts, radiance, origin.route, origin.source);
+  }
+
+  /// Whether light paths bring what the camera sees of a surface's own light.
+  static bool is_brought(const SampleContext& context, const SurfacePoint& hit) {
+    return context.small_lamps && context.small_lamps->contains(hit);
   }
 
   /// Emission met by a ray, weighted against next-event estimation: area lights and environment alike.

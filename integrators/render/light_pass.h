@@ -19,10 +19,10 @@ class LightPass {
   /// Refers to things that live as long.
   LightPass(const LightPaths& paths, const LightSorter* sorter) : paths_(paths), sorter_(sorter) {}
 
-  /// Batches of a picture, of which a crop may be all that is rendered, when each of its pixels has so many
-  /// camera samples: a light path for each, so that crops are as the whole is.
-  static uint64_t batches(int width, int height, uint32_t samples) {
-    const uint64_t paths = uint64_t(width) * uint64_t(height) * samples;
+  /// Batches when each pixel has so many camera samples. Of a picture of which a crop is rendered those of the
+  /// whole, so that crops are as the whole is.
+  uint64_t batches(uint32_t samples) const {
+    const uint64_t paths = paths_.paths_per_sample() * samples;
     return (paths + Film::halves * batch_size - 1) / (Film::halves * batch_size) * Film::halves;
   }
 

@@ -42,6 +42,7 @@ class Renderer {
         backdrop_(job.backdrop),
         sorter_(job.sorter.is_empty() ? nullptr : &job.sorter),
         has_caustics_(job.light_paths && job.light_paths->kind() == LightPathKind::caustics),
+        small_lamps_(job.light_paths ? job.light_paths->small_lamps() : nullptr),
         crop_(rendered_part(job.settings)),
         stop_(stop),
         hooks_(std::move(hooks)),
@@ -107,7 +108,7 @@ class Renderer {
   }
   /// Batches of light paths that go with the samples of complete passes and that part of the next.
   uint64_t light_batches(uint32_t part) const {
-    return light_pass_ ? LightPass::batches(options_.width, options_.height, state_.done + part) : 0;
+    return light_pass_ ? light_pass_->batches(state_.done + part) : 0;
   }
   bool is_pass_complete() const {
     if (state_.light_batches < light_batches(state_.pass.size())) return false;
@@ -244,7 +245,8 @@ class Renderer {
     CameraSample sample = camera_samples_.get({full_x, full_y, half, index});
     std::optional<LightParts> parts;
     if (sorter_) parts.emplace();
-    const SampleContext context{spread(x, y, half), sorter_, parts ? &*parts : nullptr, has_caustics_};
+    const SampleContext context{spread(x, y, half), sorter_, parts ? &*parts : nullptr, has_caustics_,
+                                small_lamps_};
     const Estimate estimate = integrator_.estimate(scene_, sample.ray, sample.sampler, context);
     ++totals.samples;
     totals.rays += estimate.rays;
@@ -326,6 +328,7 @@ class Renderer {
   const Backdrop& backdrop_;
   const LightSorter* sorter_;  ///< null: no light is kept apart
   const bool has_caustics_;
+  const SmallLamps* small_lamps_;
   std::optional<LightPass> light_pass_;
   const Crop crop_;
   const std::atomic<bool>& stop_;

@@ -45,13 +45,13 @@ std::vector<Rgb> light_of_paths(const Scene& scene, const Camera& camera, const 
   RenderSettings settings;
   settings.width = width;
   settings.height = height;
-  const LightSorter sorter({}, scene);
-  const auto paths = light_paths_of(scene, camera, integrator, settings, sorter);
+  const LightPathKind kind = integrator.light_paths(scene);
   std::vector<Rgb> pixels(size_t(grid) * grid, Rgb(0, 0, 0));
-  if (!paths) return pixels;
+  if (kind == LightPathKind::none) return pixels;
+  const LightPaths paths(scene, camera, settings, kind);
   constexpr uint64_t count = light_paths_per_pixel * grid * grid;
   Caught caught;
-  for (uint64_t i = 0; i < count; ++i) paths->trace({i, 0}, caught);
+  for (uint64_t i = 0; i < count; ++i) paths.trace({i, 0}, caught);
   const float share = float(grid) / float(width) * float(grid) / float(height) / float(count);
   for (const auto& [x, y, radiance] : caught.splats)
     pixels[size_t(y * grid / height) * grid + size_t(x * grid / width)] += radiance * share;

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -45,6 +46,24 @@ TEST(Launcher, LoadsNoLibraryThatIsSlowToLoad) {
   EXPECT_THAT(file, HasSubstr("libc.so"));
   for (const char* library : {"libOpenImageIO", "libOpenColorIO", "libembree", "libtbb"})
     EXPECT_EQ(file.find(library), std::string::npos) << library;
+}
+
+/// What a program is told of memory that the launcher starts where GLIBC_TUNABLES is as given (null: unset).
+std::string tunables_of_program(const char* given) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path launcher = folder.file("vernier"), program = folder.file("program/vernier");
+  std::filesystem::create_directory(program.parent_path());
+  std::filesystem::copy_file(VERNIER_BINARY, launcher);
+  std::ofstream(program) << "#!/bin/sh\nprintf %s \"$GLIBC_TUNABLES\"\n";
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  const std::string variable = given ? std::string("GLIBC_TUNABLES=") + given : "-uGLIBC_TUNABLES";
+  return run_process({"/usr/bin/env", variable, launcher, "render"}).out;
+}
+
+TEST(Launcher, AsksForHugePagesUnlessTold) {
+  EXPECT_EQ(tunables_of_program(nullptr), "glibc.malloc.hugetlb=1");
+  EXPECT_EQ(tunables_of_program("glibc.malloc.check=0"), "glibc.malloc.check=0:glibc.malloc.hugetlb=1");
+  EXPECT_EQ(tunables_of_program("glibc.malloc.hugetlb=0"), "glibc.malloc.hugetlb=0");
 }
 
 TEST(Launcher, LevelsHoldThoseBelowThem) {

@@ -52,6 +52,13 @@ class LightPassTest : public testing::Test {
     return state;
   }
 
+  /// Of a light path for each camera sample.
+  uint64_t light_batches(uint32_t samples) const {
+    const Camera camera({}, settings_.width, settings_.height);
+    return LightPass(LightPaths(scene_, camera, settings_, LightPathKind::caustics), nullptr)
+        .batches(samples);
+  }
+
   const Scene scene_ = lit_glass();
   RenderSettings settings_;
 };
@@ -80,7 +87,7 @@ TEST_F(LightPassTest, SameForAnyNumberOfThreadsAndFromAnyState) {
   hooks.save_interval = 0;
   hooks.save = [&](const RenderState& state) { states.push_back(state); };
   const RenderState whole = go_on(begin(), std::move(hooks));
-  EXPECT_EQ(whole.light_batches, LightPass::batches(40, 24, 40));
+  EXPECT_EQ(whole.light_batches, light_batches(40));
   EXPECT_EQ(whole.so_far.film.light_paths()[0], whole.light_batches / 2 * LightPass::batch_size);
   EXPECT_EQ(whole.so_far.film.light_paths()[1], whole.so_far.film.light_paths()[0]);
   threads.emplace(3);
@@ -89,7 +96,7 @@ TEST_F(LightPassTest, SameForAnyNumberOfThreadsAndFromAnyState) {
   const std::string file = folder.file("checkpoint");
   size_t within_light = 0;
   for (size_t i = 0; i < states.size(); i += 5) {
-    within_light += states[i].light_batches > LightPass::batches(40, 24, states[i].done);
+    within_light += states[i].light_batches > light_batches(states[i].done);
     write_checkpoint(file, {{"scene", "test"}}, states[i]);
     expect_same(go_on(*read_checkpoint(file).state), whole);
   }
