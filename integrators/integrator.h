@@ -16,6 +16,8 @@
 
 namespace vernier {
 
+class SpecularChains;
+
 /// Light that a sample knows of and leaves out, in the unit of its radiance.
 struct MissingLight {
   Rgb bent{0, 0, 0};   ///< of lamps, through glass that bends it: at most this much arrives on other ways
@@ -54,7 +56,9 @@ struct SampleContext {
   float spread = 0;
   const LightSorter* sorter = nullptr;  ///< keeps light apart; null: nobody asks
   LightParts* parts = nullptr;          ///< where the parts of Estimate::radiance are added then
-  bool has_caustics = false;            ///< LightPathKind::caustics are followed beside it
+  /// What finds the light of lamps by sharp lobes that LightPathKind::caustics cannot bring; null: none of
+  /// these are followed.
+  const SpecularChains* chains = nullptr;
 };
 
 /// A way to estimate the light along a camera ray. Immutable while rendering; called from many threads.

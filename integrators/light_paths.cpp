@@ -12,8 +12,9 @@ namespace {
 /// Paths of one stream of the sampler, whose indices have 32 bits.
 constexpr int stream_bits = 24;
 
-LightEmission emission_of(const Scene& scene, LightPathKind kind) {
-  return kind == LightPathKind::all ? LightEmission::of_all(scene) : LightEmission::of_lamps(scene);
+std::shared_ptr<const LightEmission> emission_of(const Scene& scene, LightPathKind kind) {
+  return std::make_shared<LightEmission>(kind == LightPathKind::all ? LightEmission::of_all(scene)
+                                                                    : LightEmission::of_lamps(scene));
 }
 
 /// The same place met from the side of the unit direction w.
@@ -58,7 +59,9 @@ LightPaths::LightPaths(const Scene& scene, const Camera& camera, const RenderSet
       width_(settings.width),
       height_(settings.height),
       filter_reach_(settings.filter.width),
-      seed_(settings.seed) {}
+      seed_(settings.seed) {
+  if (kind == LightPathKind::caustics) chains_.emplace(scene, emission_);
+}
 
 void LightPaths::trace(const Id& id, Caught& caught) const {
   // No picture has that many pixels: camera samples have other streams.
@@ -69,7 +72,7 @@ void LightPaths::trace(const Id& id, Caught& caught) const {
   const Vec2d place = walk.sampler.next2_fine();
   const Vec2f direction = walk.sampler.next2();
   const float time = has_times_ ? walk.sampler.next1() : middle_of_shutter;
-  if (const auto emitted = emission_.sample(choice, place, direction, time)) follow(walk, *emitted);
+  if (const auto emitted = emission_->sample(choice, place, direction, time)) follow(walk, *emitted);
   for (size_t i = walk.first_splat; i < caught.splats.size(); ++i) {
     const Rgb& radiance = caught.splats[i].radiance;
     const float smallest = std::min(radiance.x, std::min(radiance.y, radiance.z));

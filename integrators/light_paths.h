@@ -2,11 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "integrators/integrator.h"
-#include "integrators/light_emission.h"
+#include "integrators/manifold.h"
 #include "integrators/render/pixel_filter.h"
 #include "scene/camera.h"
 #include "scene/segment.h"
@@ -47,6 +48,8 @@ class LightPaths {
   void trace(const Id& id, Caught& caught) const;
 
   LightPathKind kind() const { return kind_; }
+  /// What finds the light that these paths do not bring, beside LightPathKind::caustics; else null.
+  const SpecularChains* chains() const { return chains_ ? &*chains_ : nullptr; }
 
  private:
   struct Walk;
@@ -69,7 +72,8 @@ class LightPaths {
   const LightPathKind kind_;
   const LightSorter* sorter_;
   const IntegratorOptions options_;
-  const LightEmission emission_;
+  const std::shared_ptr<const LightEmission> emission_;
+  std::optional<SpecularChains> chains_;
   const FilterSampler filter_;
   const Crop crop_;
   const bool has_times_;  ///< something moves while the shutter is open

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrators/light_emission.h"
+#include "integrators/manifold.h"
 #include "integrators/scattering_stretch.h"
 
 namespace vernier {
@@ -12,7 +12,8 @@ namespace {
 /// looks through, and what the path meets beyond is weighted as if that vertex saw it. A point where a medium
 /// scatters light is a vertex like any other, but for the depth, which counts surfaces.
 ///
-/// Light of lamps that is scattered first by a sharp lobe is left to LightPathKind::caustics.
+/// Light of lamps that is scattered first by a sharp lobe is left to LightPathKind::caustics, and to
+/// SpecularChains where the camera sees that by sharp lobes alone.
 class PathIntegrator : public Integrator {
  public:
   explicit PathIntegrator(const IntegratorOptions& options) : options_(options) {}
@@ -79,6 +80,8 @@ class PathIntegrator : public Integrator {
             light && !(looks_through && will_be_met(*light, surface)))
           add_direct(out, {{scene, throughput, depth, route, view}, *hit, surface}, *light, context,
                      shadow_roulette);
+      if (context.chains && view.is_sharp && options_.light_sampling != LightSampling::bsdf)
+        add_chain(out, {{scene, throughput, depth, route, view}, *hit, surface}, vertex, context, sampler);
       const auto next = surface.sample(lobe_choice, direction);
       if (!next) break;
       if (context.sorter) route = route.scattered(surface, next->wi, next->is_delta, next->is_straight);
@@ -216,9 +219,26 @@ class PathIntegrator : public Integrator {
                                    ? vertex.path.route.scattered(vertex.surface, light.wi, false, false)
                                    : vertex.path.route;
       add(out, vertex.path.depth + passage.surfaces, radiance, {context, route, light.source});
-    } else if (light.is_delta && !(context.has_caustics && passage.is_sharp && !vertex.path.view.is_sharp)) {
+    } else if (light.is_delta && !(context.chains && passage.is_sharp &&
+                                   !(vertex.path.view.is_sharp && passage.has_normal_map))) {
       out.missing.bent += radiance;
     }
+  }
+
+  /// Light of lamps by sharp lobes to where no light path can end. Kept out of the loop.
+  [[gnu::noinline]] void add_chain(Estimate& out, const Vertex& vertex, int number,
+                                   const SampleContext& context, Sampler& sampler) const {
+    sampler.start_block(chain_blocks + uint32_t(number));
+    const auto seed = uint64_t(sampler.next1_fine() * 0x1p53);
+    const SpecularChains::Receiver receiver{vertex.at, vertex.surface, vertex.path.throughput,
+                                            options_.russian_roulette ? context.spread : 0};
+    const auto light = context.chains->sample(receiver, seed, out.rays);
+    if (!light) return;
+    const LightRoute route = context.sorter
+                                 ? vertex.path.route.scattered(vertex.surface, light->wi, false, false)
+                                 : vertex.path.route;
+    add(out, vertex.path.depth + light->surfaces, light->radiance, {context, route, light->source});
+    out.missing.bent += light->rest;
   }
 
   /// A scattering medium on the way: adds the light that it sends along it, moves `hit` to where it scatters

@@ -76,6 +76,7 @@ struct Passage {
   /// straight, along narrow lobes only.
   bool is_bent = false;
   bool is_sharp = true;  ///< what bends it does so by sharp lobes alone
+  bool has_normal_map = false;  ///< of which some follow a normal texture
 };
 
 /// The one answer to how much light gets along a segment, its ends excluded: opaque surfaces, coverage, clear
