@@ -83,7 +83,7 @@ constexpr double least_angle = 1e-3;
 constexpr double close_enough = 1e-10;
 /// Newton's steps converge within a few or not at all.
 constexpr int most_steps = 24, most_halvings = 6;
-constexpr double longest_step = 0.5;
+constexpr double longest_step = 0.5, most_growth = 3;
 /// First directions of the same chain differ by rounding alone.
 constexpr double same_direction = 1e-6;
 /// Turns a ray by some of its last digits, by which coverage is drawn anew.
@@ -126,7 +126,8 @@ class SpecularChains::Search {
     return events ? converge(*direction, *events) : std::nullopt;
   }
 
-  /// What arrives by a chain toward the viewer, black if something stands between, and `arrival` but for its light.
+  /// What arrives by a chain toward the viewer, black if something stands between, and `arrival` but for its
+  /// light.
   Rgb carried_by(const Found& found, Arrival& arrival) const;
 
  private:
@@ -207,7 +208,8 @@ std::optional<SpecularChain> SpecularChains::Search::follow(const Vec3d& directi
 }
 
 /// Newton's method on the first direction alone: all other surfaces are met as a ray meets them, so that what
-/// converges is a path of light. A step that leads nowhere, or no nearer, is halved.
+/// converges is a path of light. A step that leads nowhere, or far away, is halved; to ask for nearer ones
+/// would hold it up at the edges of triangles, where slopes jump.
 std::optional<SpecularChains::Search::Found> SpecularChains::Search::converge(
     Vec3d direction, const ChainEvents& events) const {
   const auto chain = follow(direction, events);
@@ -219,18 +221,18 @@ std::optional<SpecularChains::Search::Found> SpecularChains::Search::converge(
     const double size = std::hypot(turn.x, turn.y);
     if (!std::isfinite(size)) return std::nullopt;
     if (size > longest_step) turn *= longest_step / size;
-    bool is_nearer = false;
-    for (int halving = 0; !is_nearer && halving < most_halvings; ++halving, turn *= 0.5) {
+    bool is_taken = false;
+    for (int halving = 0; !is_taken && halving < most_halvings; ++halving, turn *= 0.5) {
       const Vec3d next = turned(direction, turn);
       const auto changed = follow(next, events);
       if (!changed) continue;
       const Miss next_miss = miss_of(changed->pencil(), target_);
-      if (!(next_miss.size() < miss.size())) continue;
-      is_nearer = true;
+      if (!(next_miss.size() < most_growth * miss.size())) continue;
+      is_taken = true;
       direction = next;
       miss = next_miss;
     }
-    if (!is_nearer) return std::nullopt;
+    if (!is_taken) return std::nullopt;
   }
   return std::nullopt;
 }
@@ -275,7 +277,7 @@ SpecularChains::SpecularChains(const Scene& scene, std::shared_ptr<const LightEm
 }
 
 std::optional<SpecularChains::Arrival> SpecularChains::sample(const Receiver& receiver, uint64_t seed,
-                                                            RayCounts& rays) const {
+                                                              RayCounts& rays) const {
   if (emission_->empty()) return std::nullopt;
   Numbers numbers(seed);
   const auto [lamp, prob] = emission_->choose(numbers.next());
@@ -292,9 +294,7 @@ std::optional<SpecularChains::Arrival> SpecularChains::sample(const Receiver& re
   const Rgb radiance = search.carried_by(*found, arrival);
   if (is_black(radiance) || !is_finite(radiance)) return std::nullopt;
   const float survival =
-      receiver.spread > 0
-          ? std::clamp(4 * max_component(radiance) / receiver.spread, least_share, 1.f)
-          : 1;
+      receiver.spread > 0 ? std::clamp(4 * max_component(radiance) / receiver.spread, least_share, 1.f) : 1;
   if (float(numbers.next()) >= survival) return std::nullopt;
   for (uint32_t trials = 1; trials <= most_trials; ++trials) {
     if (const auto again = search.attempt(numbers); !again || !(*again == *found)) continue;

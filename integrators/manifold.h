@@ -9,8 +9,6 @@
 #include "integrators/specular_chain.h"
 #include "scene/lights/punctual.h"
 #include "vernier/result.h"
-#include "scene/lights/punctual.h"
-#include "vernier/result.h"
 
 namespace vernier {
 
@@ -32,10 +30,10 @@ class SpecularChains {
     float spread;  ///< as of SampleContext; 0: all that is found is looked for again
   };
   struct Arrival {
-    Rgb radiance;   ///< toward the viewer, throughput included
-    Rgb rest;       ///< about what is left out: of chains too improbable to be found again
-    Vec3f wi;       ///< where it comes from
-    int surfaces;   ///< on its way
+    Rgb radiance;  ///< toward the viewer, throughput included
+    Rgb rest;      ///< about what is left out: of chains too improbable to be found again
+    Vec3f wi;      ///< where it comes from
+    int surfaces;  ///< on its way
     LightSource source;
   };
   /// Light of one chain, if any is found, such that the mean over random `seed` is that of all of them. Light

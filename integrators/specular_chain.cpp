@@ -38,10 +38,7 @@ SpecularChain::SpecularChain(const Scene& scene, const Interaction& from, const 
                              const Rgb& carried)
     : scene_(scene), segment_(from.spawn(Vec3f(direction))), carried_(carried) {
   const Tangents tangents(direction);
-  pencil_ = {Vec3d(from.position),
-             direction,
-             {Vec3d(0, 0, 0), Vec3d(0, 0, 0)},
-             {tangents.x, tangents.y}};
+  pencil_ = {Vec3d(from.position), direction, {Vec3d(0, 0, 0), Vec3d(0, 0, 0)}, {tangents.x, tangents.y}};
 }
 
 bool SpecularChain::meet() {
