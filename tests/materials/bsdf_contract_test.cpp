@@ -82,15 +82,17 @@ TEST(BsdfContract, DeltaLobesAreTheMeanOfSamples) {
         const auto sample = bsdf_case.bsdf.sample(wo, (float(i) + 0.5f) / steps, {0.3f, 0.6f});
         if (!sample || !sample->is_delta()) continue;
         (sample->is_transmitted() ? transmitted : reflected) += Vec3d(sample->weight) / steps;
-        if (bsdf_case.spread == 0 && sample->is_transmitted())
+        if (bsdf_case.spread == 0 && sample->is_transmitted()) {
           ASSERT_EQ(sample->eta, bsdf_case.bsdf.delta(wo).eta);
+        }
       }
       const DeltaLobes lobes = bsdf_case.bsdf.delta(wo);
       sharp += !is_black(lobes.reflected);
       for (int c = 0; c < 3; ++c) {
         ASSERT_NEAR(reflected[c], lobes.reflected[c], 2e-3 * (1 + lobes.reflected[c]));
-        if (bsdf_case.spread == 0)
+        if (bsdf_case.spread == 0) {
           ASSERT_NEAR(transmitted[c], lobes.transmitted[c], 2e-3 * (1 + lobes.transmitted[c]));
+        }
       }
     }
   EXPECT_GT(sharp, 10);
