@@ -18,11 +18,12 @@ namespace vernier {
 struct Splat {
   int x, y;
   Rgb radiance;
+  bool is_beyond;  ///< the depth limit: no part of the picture, but told as missing
 };
 
 /// What some light paths found.
 struct Caught {
-  std::vector<Splat> splats;      ///< at most one a pixel of each path
+  std::vector<Splat> splats;      ///< at most two a pixel of each path: within the depth limit, and beyond
   std::vector<LightParts> parts;  ///< of each of these, where light is kept apart
   RayCounts rays;
   uint64_t rejected = 0;  ///< paths that were not finite, or negative, and of which nothing is kept
@@ -65,7 +66,8 @@ class LightPaths {
                  const Rgb& flux) const;
   Passage sightline(const Interaction& at, const Camera::Sight& sight, const Vec3f& to_camera) const;
   std::optional<Pixel> pixel_at(Vec2f raster, const Vec2f& u) const;
-  void add(Walk& walk, const Pixel& pixel, const Rgb& radiance) const;
+  void add(Walk& walk, const Splat& splat) const;
+  float survival_probability(const Walk& walk, int vertex, const Rgb& part) const;
 
   const Scene& scene_;
   const Camera& camera_;

@@ -110,9 +110,6 @@ class PathIntegrator : public Integrator {
   }
 
  private:
-  /// Of the paths that reach the depth limit, those that go on to tell how much light it takes.
-  static constexpr float audited_share = 1 / 32.f;
-
   /// The surface and density that a ray left with; no surface: the camera.
   struct Scattering {
     std::optional<SurfacePoint> from;
@@ -286,7 +283,7 @@ class PathIntegrator : public Integrator {
   /// Russian roulette.
   float survival_probability(int vertex, int depth, const Rgb& throughput) const {
     const float survival = roulette_survival(throughput, vertex);
-    if (depth > options_.max_depth) return std::min(0.9f, survival);
+    if (depth > options_.max_depth) return std::min(most_audited_survival, survival);
     return is_at_risk(options_, vertex) ? survival : 1;
   }
 
