@@ -17,6 +17,7 @@
 namespace vernier {
 
 class SmallLamps;
+class SpecularChains;
 
 /// Light that a sample knows of and leaves out, in the unit of its radiance.
 struct MissingLight {
@@ -56,7 +57,9 @@ struct SampleContext {
   float spread = 0;
   const LightSorter* sorter = nullptr;  ///< keeps light apart; null: nobody asks
   LightParts* parts = nullptr;          ///< where the parts of Estimate::radiance are added then
-  bool has_caustics = false;            ///< LightPathKind::caustics are followed beside it
+  /// What finds the light of lamps by sharp lobes that LightPathKind::caustics cannot bring; null: none of
+  /// these are followed.
+  const SpecularChains* chains = nullptr;
   /// Whose light to the camera is brought beside it; null: none's.
   const SmallLamps* small_lamps = nullptr;
 };

@@ -127,21 +127,30 @@ LightEmission LightEmission::of_lamps(const Scene& scene) {
   return emission;
 }
 
+LightEmission::Choice LightEmission::choose(double u) const {
+  const size_t light = by_power_.sample(u);
+  return {light, by_power_.prob(light)};
+}
+
+std::optional<LightRay> LightEmission::shine(size_t light, const Vec2d& place, const Vec2f& direction,
+                                             float time) const {
+  float density = 1;
+  Vec2d aimed = place;
+  if (!aims_.empty() && !aims_[light].empty()) aimed = Vec2d(aims_[light].sample(place, density));
+  auto ray = lights_[light]->emit(bounds_, aimed, direction, time);
+  if (!ray || !(density > 0)) return std::nullopt;
+  ray->flux /= density;
+  return ray;
+}
+
 std::optional<LightEmission::Ray> LightEmission::sample(double u, const Vec2d& place, const Vec2f& direction,
                                                         float time) const {
-  if (by_power_.empty()) return std::nullopt;
-  const size_t i = by_power_.sample(u);
-  float density = by_power_.prob(i);
-  Vec2d aimed = place;
-  if (!aims_.empty() && !aims_[i].empty()) {
-    float pdf;
-    aimed = Vec2d(aims_[i].sample(place, pdf));
-    density *= pdf;
-  }
-  const auto light = lights_[i]->emit(bounds_, aimed, direction, time);
-  if (!light || !(density > 0)) return std::nullopt;
+  if (empty()) return std::nullopt;
+  const auto [i, prob] = choose(u);
+  const auto light = shine(i, place, direction, time);
+  if (!light || !(prob > 0)) return std::nullopt;
   Ray ray{*light, lights_[i]->source()};
-  ray.flux /= density;
+  ray.flux /= prob;
   return ray;
 }
 

@@ -25,6 +25,17 @@ class LightEmission {
   /// u chooses the light, the others are as of Light::emit. Empty: a light path that brings nothing.
   std::optional<Ray> sample(double u, const Vec2d& place, const Vec2f& direction, float time) const;
 
+  /// The light that sample() chooses by u, as its number among those it was made of; there must be some.
+  struct Choice {
+    size_t light;
+    float prob;
+  };
+  Choice choose(double u) const;
+  /// Nothing is ever sampled.
+  bool empty() const { return by_power_.empty(); }
+  /// A ray of that light, its flux over the density of the place.
+  std::optional<LightRay> shine(size_t light, const Vec2d& place, const Vec2f& direction, float time) const;
+
  private:
   explicit LightEmission(const Scene& scene) : bounds_(scene.lit_bounds()) {}
 

@@ -12,12 +12,13 @@ namespace {
 /// Paths of one stream of the sampler, whose indices have 32 bits.
 constexpr int stream_bits = 24;
 
-/// The block of the sampler whose numbers show a small lamp: beyond those of vertices and media.
-constexpr uint32_t small_lamp_block = 1u << 21;
+/// The block of the sampler whose numbers show a small lamp: beyond those of vertices, media and chains.
+constexpr uint32_t small_lamp_block = 1u << 22;
 
-std::optional<LightEmission> emission_of(const Scene& scene, LightPathKind kind) {
-  if (kind == LightPathKind::none) return std::nullopt;
-  return kind == LightPathKind::all ? LightEmission::of_all(scene) : LightEmission::of_lamps(scene);
+std::shared_ptr<const LightEmission> emission_of(const Scene& scene, LightPathKind kind) {
+  if (kind == LightPathKind::none) return nullptr;
+  return std::make_shared<LightEmission>(kind == LightPathKind::all ? LightEmission::of_all(scene)
+                                                                    : LightEmission::of_lamps(scene));
 }
 
 /// The same place met from the side of the unit direction w.
@@ -45,6 +46,7 @@ struct LightPaths::Walk {
   LightSource source = {};
   int depth = 1;                  ///< of the light, for a camera that sees the vertex: surfaces met, and one
   int scatterings = 0;            ///< but for those passed straight on
+  float audit_scale = 1;          ///< of the few paths that go on beyond the depth limit
   Vec2f lens{0, 0}, pixel{0, 0};  ///< numbers for the connection of this vertex
 };
 
@@ -63,7 +65,9 @@ LightPaths::LightPaths(const Scene& scene, const Camera& camera, const RenderSet
       width_(settings.width),
       height_(settings.height),
       filter_reach_(settings.filter.width),
-      seed_(settings.seed) {}
+      seed_(settings.seed) {
+  if (kind == LightPathKind::caustics) chains_.emplace(scene, emission_);
+}
 
 uint64_t LightPaths::paths_per_sample() const {
   const uint64_t pixels = uint64_t(width_) * uint64_t(height_);
@@ -114,7 +118,7 @@ void LightPaths::show_small_lamp(Walk& walk) const {
   if (is_black(passage.fraction) || passage.surfaces > 0) return;
   const float pixels = lamp.area * std::abs(dot(view->to_camera, lamp.at.ng)) * view->sight.area;
   const Rgb radiance = emitted * passage.fraction * (pixels * view->pixel.weight);
-  add(walk, view->pixel, radiance);
+  add(walk, {view->pixel.x, view->pixel.y, radiance, false});
   if (sorter_)
     sorter_->add(walk.caught.parts.back(), radiance, LightRoute(),
                  {LightSource::Kind::instance, lamp.at.instance});
@@ -127,13 +131,20 @@ void LightPaths::follow(Walk& walk, const LightEmission::Ray& emitted) const {
   for (int vertex = 1;; ++vertex) {
     const auto hit = next_vertex(walk, segment, vertex, flux);
     if (!hit) return;
-    if (!hit->is_in_medium() && ++walk.depth > options_.max_depth) return;
+    if (!hit->is_in_medium()) ++walk.depth;
     walk.sampler.start_block(uint32_t(vertex));
     walk.lens = walk.sampler.next2();
     walk.pixel = walk.sampler.next2();
     const Vec2f direction = walk.sampler.next2();
-    const float lobe = walk.sampler.next1(), roulette = walk.sampler.next1();
+    const float lobe = walk.sampler.next1();
+    float roulette = walk.sampler.next1();
 
+    if (!hit->is_in_medium() && walk.depth == options_.max_depth + 1) {
+      if (roulette >= audited_share) return;
+      roulette /= audited_share;
+      walk.audit_scale = 1 / audited_share;
+      flux *= walk.audit_scale;
+    }
     const Vec3f to_light = -segment.ray.direction;
     // As for a camera path that samples the lamp: it counts how far the first scattering is.
     Rgb arriving = flux;
@@ -149,14 +160,19 @@ void LightPaths::follow(Walk& walk, const LightEmission::Ray& emitted) const {
       flux = arriving;
     }
     flux = carried_on(*hit, to_light, lit, *next, flux);
-    if (is_at_risk(options_, vertex)) {
-      const float survival = roulette_survival(ratio(flux, emitted.flux), vertex);
-      if (roulette >= survival) return;
-      flux /= survival;
-    }
+    const float survival = survival_probability(walk, vertex, ratio(flux, emitted.flux));
+    if (roulette >= survival) return;
+    flux /= survival;
     if (is_black(flux)) return;
     segment = hit->spawn(next->wi);
   }
+}
+
+/// Russian roulette, for a path that carries that part of what was emitted.
+float LightPaths::survival_probability(const Walk& walk, int vertex, const Rgb& part) const {
+  const float survival = roulette_survival(part / walk.audit_scale, vertex);
+  if (walk.depth > options_.max_depth) return std::min(most_audited_survival, survival);
+  return is_at_risk(options_, vertex) ? survival : 1;
 }
 
 /// Where a light path goes next: to a surface, or to a point where a medium scatters it. `flux` becomes what
@@ -212,13 +228,14 @@ void LightPaths::connect(Walk& walk, const Interaction& at, const Vec3f& to_ligh
   if (is_black(scattered)) return;
   ++walk.caught.rays.shadow;
   const Passage passage = sightline(at, sight, to_camera);
-  if (is_black(passage.fraction) || walk.depth + passage.surfaces > options_.max_depth) return;
+  if (is_black(passage.fraction)) return;
   const float cosines =
       at.is_in_medium() ? 1 : std::abs(dot(to_camera, at.ng)) / std::abs(dot(to_light, at.ng));
   const Rgb radiance = flux * scattered * passage.fraction * (cosines * sight.area * pixel.weight);
   if (is_black(radiance)) return;
-  add(walk, pixel, radiance);
-  if (!sorter_) return;
+  const bool is_beyond = walk.depth + passage.surfaces > options_.max_depth;
+  add(walk, {pixel.x, pixel.y, radiance, is_beyond});
+  if (!sorter_ || is_beyond) return;
   LightRoute route = LightRoute().scattered(surface, to_light, false, false);
   if (walk.scatterings > 0) route = route.scattered(surface, to_light, false, false);
   sorter_->add(walk.caught.parts.back(), radiance, route, walk.source);
@@ -290,17 +307,17 @@ std::optional<LightPaths::Pixel> LightPaths::pixel_at(Vec2f raster, const Vec2f&
   return Pixel{x, y, weight};
 }
 
-void LightPaths::add(Walk& walk, const Pixel& pixel, const Rgb& radiance) const {
+void LightPaths::add(Walk& walk, const Splat& splat) const {
   std::vector<Splat>& splats = walk.caught.splats;
   for (size_t i = walk.first_splat; i < splats.size(); ++i)
-    if (splats[i].x == pixel.x && splats[i].y == pixel.y) {
-      splats[i].radiance += radiance;
+    if (splats[i].x == splat.x && splats[i].y == splat.y && splats[i].is_beyond == splat.is_beyond) {
+      splats[i].radiance += splat.radiance;
       // The parts of the latest splat are the last.
       std::swap(splats[i], splats.back());
       if (sorter_) std::swap(walk.caught.parts[i], walk.caught.parts.back());
       return;
     }
-  splats.push_back({pixel.x, pixel.y, radiance});
+  splats.push_back(splat);
   if (sorter_) walk.caught.parts.emplace_back();
 }
 

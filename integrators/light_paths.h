@@ -2,11 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "integrators/integrator.h"
-#include "integrators/light_emission.h"
+#include "integrators/manifold.h"
 #include "integrators/render/pixel_filter.h"
 #include "integrators/small_lamps.h"
 #include "scene/camera.h"
@@ -18,11 +19,12 @@ namespace vernier {
 struct Splat {
   int x, y;
   Rgb radiance;
+  bool is_beyond;  ///< the depth limit: no part of the picture, but told as missing
 };
 
 /// What some light paths found.
 struct Caught {
-  std::vector<Splat> splats;      ///< at most one a pixel of each path
+  std::vector<Splat> splats;      ///< at most two a pixel of each path: within the depth limit, and beyond
   std::vector<LightParts> parts;  ///< of each of these, where light is kept apart
   RayCounts rays;
   uint64_t rejected = 0;  ///< paths that were not finite, or negative, and of which nothing is kept
@@ -53,6 +55,8 @@ class LightPaths {
   const SmallLamps* small_lamps() const { return small_lamps_.size() > 0 ? &small_lamps_ : nullptr; }
   /// So many light paths go with one camera sample of each pixel of the whole picture.
   uint64_t paths_per_sample() const;
+  /// What finds the light that these paths do not bring, beside LightPathKind::caustics; else null.
+  const SpecularChains* chains() const { return chains_ ? &*chains_ : nullptr; }
 
  private:
   struct Walk;
@@ -77,14 +81,16 @@ class LightPaths {
   std::optional<View> view_of(const SurfacePoint& at, const Vec2f& on_lens, const Vec2f& in_pixel) const;
   Passage sightline(const Interaction& at, const Camera::Sight& sight, const Vec3f& to_camera) const;
   std::optional<Pixel> pixel_at(Vec2f raster, const Vec2f& u) const;
-  void add(Walk& walk, const Pixel& pixel, const Rgb& radiance) const;
+  void add(Walk& walk, const Splat& splat) const;
+  float survival_probability(const Walk& walk, int vertex, const Rgb& part) const;
 
   const Scene& scene_;
   const Camera& camera_;
   const LightPathKind kind_;
   const LightSorter* sorter_;
   const IntegratorOptions options_;
-  const std::optional<LightEmission> emission_;  ///< empty: no path goes on from a light
+  const std::shared_ptr<const LightEmission> emission_;  ///< null: no path goes on from a light
+  std::optional<SpecularChains> chains_;
   const SmallLamps small_lamps_;
   const FilterSampler filter_;
   const Crop crop_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "integrators/light_emission.h"
+#include "integrators/manifold.h"
 #include "integrators/scattering_stretch.h"
 #include "integrators/small_lamps.h"
 
@@ -13,7 +13,8 @@ namespace {
 /// looks through, and what the path meets beyond is weighted as if that vertex saw it. A point where a medium
 /// scatters light is a vertex like any other, but for the depth, which counts surfaces.
 ///
-/// Light of lamps that is scattered first by a sharp lobe is left to LightPathKind::caustics.
+/// Light of lamps that is scattered first by a sharp lobe is left to LightPathKind::caustics, and to
+/// SpecularChains where the camera sees that by sharp lobes alone.
 class PathIntegrator : public Integrator {
  public:
   explicit PathIntegrator(const IntegratorOptions& options) : options_(options) {}
@@ -81,6 +82,8 @@ class PathIntegrator : public Integrator {
             light && !(looks_through && will_be_met(*light, surface)))
           add_direct(out, {{scene, throughput, depth, route, view}, *hit, surface}, *light, context,
                      shadow_roulette);
+      if (context.chains && view.is_sharp && options_.light_sampling != LightSampling::bsdf)
+        add_chain(out, {{scene, throughput, depth, route, view}, *hit, surface}, vertex, context, sampler);
       const auto next = surface.sample(lobe_choice, direction);
       if (!next) break;
       if (context.sorter) route = route.scattered(surface, next->wi, next->is_delta, next->is_straight);
@@ -110,9 +113,6 @@ class PathIntegrator : public Integrator {
   }
 
  private:
-  /// Of the paths that reach the depth limit, those that go on to tell how much light it takes.
-  static constexpr float audited_share = 1 / 32.f;
-
   /// The surface and density that a ray left with; no surface: the camera.
   struct Scattering {
     std::optional<SurfacePoint> from;
@@ -224,9 +224,26 @@ class PathIntegrator : public Integrator {
                                    ? vertex.path.route.scattered(vertex.surface, light.wi, false, false)
                                    : vertex.path.route;
       add(out, vertex.path.depth + passage.surfaces, radiance, {context, route, light.source});
-    } else if (light.is_delta && !(context.has_caustics && passage.is_sharp && !vertex.path.view.is_sharp)) {
+    } else if (light.is_delta && !(context.chains && passage.is_sharp &&
+                                   !(vertex.path.view.is_sharp && passage.has_normal_map))) {
       out.missing.bent += radiance;
     }
+  }
+
+  /// Light of lamps by sharp lobes to where no light path can end. Kept out of the loop.
+  [[gnu::noinline]] void add_chain(Estimate& out, const Vertex& vertex, int number,
+                                   const SampleContext& context, Sampler& sampler) const {
+    sampler.start_block(chain_blocks + uint32_t(number));
+    const auto seed = uint64_t(sampler.next1_fine() * 0x1p53);
+    const SpecularChains::Receiver receiver{vertex.at, vertex.surface, vertex.path.throughput,
+                                            options_.russian_roulette ? context.spread : 0};
+    const auto light = context.chains->sample(receiver, seed, out.rays);
+    if (!light) return;
+    const LightRoute route = context.sorter
+                                 ? vertex.path.route.scattered(vertex.surface, light->wi, false, false)
+                                 : vertex.path.route;
+    add(out, vertex.path.depth + light->surfaces, light->radiance, {context, route, light->source});
+    out.missing.bent += light->rest;
   }
 
   /// A scattering medium on the way: adds the light that it sends along it, moves `hit` to where it scatters
@@ -274,7 +291,7 @@ class PathIntegrator : public Integrator {
   /// Russian roulette.
   float survival_probability(int vertex, int depth, const Rgb& throughput) const {
     const float survival = roulette_survival(throughput, vertex);
-    if (depth > options_.max_depth) return std::min(0.9f, survival);
+    if (depth > options_.max_depth) return std::min(most_audited_survival, survival);
     return is_at_risk(options_, vertex) ? survival : 1;
   }
 

@@ -8,6 +8,8 @@ namespace vernier {
 
 /// Blocks of the sampler for where a ray is scattered on its way; the lower ones are those of vertices.
 constexpr uint32_t medium_blocks = 1u << 20;
+/// And of those for chains of sharp lobes from a vertex to a lamp.
+constexpr uint32_t chain_blocks = 1u << 21;
 
 /// The part of a path's segment that lies in a scattering medium: where light is scattered into it. Two
 /// techniques find such places, by free flight and, for lamps, by where these shine on the segment; the light

@@ -19,6 +19,11 @@ inline float power_heuristic(float pdf, float other_pdf) {
 /// than so many vertices.
 constexpr int most_certain_vertices = 1000;
 
+/// Of the paths that reach the depth limit, those that go on to tell how much light it takes.
+constexpr float audited_share = 1 / 32.f;
+/// Of these, the most that go on from any vertex beyond.
+constexpr float most_audited_survival = 0.9f;
+
 /// Whether a path may end by Russian roulette after that vertex, counted from 1.
 inline bool is_at_risk(const IntegratorOptions& options, int vertex) {
   return (options.russian_roulette && vertex > 1) || vertex > most_certain_vertices;

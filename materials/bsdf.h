@@ -42,6 +42,10 @@ class Bsdf : public std::variant<Lambert, Glossy, Dielectric, Mixture, Layered, 
     if (wo.z < least_cosine) return {0, 0, 0};
     return std::visit([&](const auto& model) { return model.straight(wo); }, base());
   }
+  DeltaLobes delta(const Vec3f& wo) const {
+    if (wo.z < least_cosine) return {};
+    return std::visit([&](const auto& model) { return model.delta(wo); }, base());
+  }
 
  private:
   /// Directions nearer to the surface are answered with nothing: models divide by cosines and their squares.

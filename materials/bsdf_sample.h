@@ -18,6 +18,7 @@
 //   Rgb straight(wo) const                                       fraction of light that passes undeflected,
 //   as
 //                                                                a delta lobe toward -wo
+//   DeltaLobes delta(wo) const                                   what sample() draws of delta lobes, exactly
 
 namespace vernier {
 
@@ -49,6 +50,20 @@ struct SpecularRays {
   Rgb transmitted{0, 0, 0};
   Vec3f refracted{0, 0, -1};  ///< direction of `transmitted`
   float alpha = 0;            ///< width of the lobes taken for sharp
+};
+
+/// What the delta lobes of a surface carry, each with its choice undone: the mean of what sample() weighs it
+/// with. Of dispersing glass, whose colors are bent to different sides, only what it reflects.
+struct DeltaLobes {
+  Rgb reflected{0, 0, 0};    ///< from reflect(wo)
+  Rgb transmitted{0, 0, 0};  ///< from where light is bent to wo; with the factor 1/eta^2
+  float eta = 1;             ///< as of BsdfSample, for what is transmitted
+
+  DeltaLobes& operator*=(float part) {
+    reflected *= part;
+    transmitted *= part;
+    return *this;
+  }
 };
 
 /// wo mirrored about the normal.

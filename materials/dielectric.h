@@ -94,6 +94,18 @@ struct Dielectric {
     return is_delta() && (thin || eta == 1) ? boundary(wo.z).transmitted : Rgb(0, 0, 0);
   }
 
+  DeltaLobes delta(const Vec3f& wo) const {
+    if (dispersion) {
+      Rgb reflected(0, 0, 0);
+      for (int c = 0; c < 3; ++c) reflected[c] = of_channel(c).delta(wo).reflected[c];
+      return {reflected};
+    }
+    if (!is_delta()) return {};
+    const Split split = boundary(wo.z);
+    const float bent = thin ? 1 : eta;
+    return {split.reflected, split.transmitted / (bent * bent), bent};
+  }
+
   SpecularRays specular(const Vec3f& wo) const {
     const Split split = boundary(wo.z);
     const float bent = thin ? 1 : eta;

@@ -72,6 +72,9 @@ class Glossy {
     return {fresnel_(wo.z), {0, 0, 0}, {0, 0, -1}, ggx_.mean_width()};
   }
   Rgb straight(const Vec3f& /*wo*/) const { return {0, 0, 0}; }
+  DeltaLobes delta(const Vec3f& wo) const {
+    return ggx_.is_smooth() ? DeltaLobes{seen_from(wo).facets} : DeltaLobes{};
+  }
 
  private:
   Glossy(const Fresnel& fresnel, const Ggx& ggx) : fresnel_(fresnel), ggx_(ggx) {}

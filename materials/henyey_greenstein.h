@@ -29,6 +29,7 @@ struct HenyeyGreenstein {
   Rgb albedo(const Vec3f& /*wo*/) const { return {1, 1, 1}; }
   SpecularRays specular(const Vec3f& /*wo*/) const { return {}; }
   Rgb straight(const Vec3f& /*wo*/) const { return {0, 0, 0}; }
+  DeltaLobes delta(const Vec3f& /*wo*/) const { return {}; }
 
  private:
   /// Per solid angle. The cosine is told by how far apart the unit vectors are, since where it is nearly one

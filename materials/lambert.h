@@ -26,6 +26,7 @@ struct Lambert {
   Rgb albedo(const Vec3f& /*wo*/) const { return reflectance; }
   SpecularRays specular(const Vec3f& /*wo*/) const { return {}; }
   Rgb straight(const Vec3f& /*wo*/) const { return {0, 0, 0}; }
+  DeltaLobes delta(const Vec3f& /*wo*/) const { return {}; }
 };
 
 }  // namespace vernier

@@ -51,6 +51,18 @@ std::optional<BsdfSample> Layered::sample_sheen(const Vec2f& v) {
   return BsdfSample{wi, {0, 0, 0}, 0, Lobe::glossy, 1};
 }
 
+DeltaLobes Layered::delta(const Vec3f& wo) const {
+  const View view = seen_from(wo);
+  DeltaLobes lobes = base_.delta(wo);
+  lobes.reflected *= base_scale(wo, reflect(wo), view);
+  // Fibres ask for the cosine of what is transmitted, and nothing else of its direction.
+  const float cos_t = safe_sqrt(1 - (1 - square(wo.z)) / square(lobes.eta));
+  lobes.transmitted *= base_scale(wo, {0, 0, -cos_t}, view);
+  if (coat_ && coat_.normal == Vec3f(0, 0, 1))
+    lobes.reflected += coat_.facets().delta(wo).reflected * view.coat;
+  return lobes;
+}
+
 SpecularRays Layered::specular(const Vec3f& wo) const {
   const View view = seen_from(wo);
   SpecularRays rays = base_.specular(wo);

@@ -46,6 +46,8 @@ class Layered {
 
   SpecularRays specular(const Vec3f& wo) const;
   Rgb straight(const Vec3f& wo) const { return base_.straight(wo) * base_scale(wo, -wo, seen_from(wo)); }
+  /// A coat whose normal is another than the base's is left out: it reflects to another side.
+  DeltaLobes delta(const Vec3f& wo) const;
 
  private:
   /// All that depends on wo alone, with the choice among the layers.

@@ -63,6 +63,14 @@ struct Mixture {
     return glass_weight > 0 ? glass.straight(wo) * glass_weight : Rgb(0, 0, 0);
   }
 
+  DeltaLobes delta(const Vec3f& wo) const {
+    if (glass_weight <= 0) return glossy.delta(wo);
+    DeltaLobes lobes = glass.delta(wo);
+    lobes *= glass_weight;
+    lobes.reflected += glossy.delta(wo).reflected * (1 - glass_weight);
+    return lobes;
+  }
+
  private:
   float glass_prob(const Vec3f& wo) const {
     const float clear = glass_weight * luminance(glass.albedo(wo));

@@ -244,6 +244,25 @@ Vec3f SceneGeometry::shading_normal(const SurfacePoint& point) const {
   return unit_or(n, point.ng);
 }
 
+std::optional<std::array<Vec3f, 3>> SceneGeometry::corner_normals(const SurfacePoint& point) const {
+  const Instance& placed = instances_[point.instance];
+  const MeshDescription& mesh = meshes_[placed.mesh];
+  if (mesh.normals.empty()) return std::nullopt;
+  const Triangle& triangle = mesh.triangles[point.primitive];
+  std::array<Vec3f, 3> normals;
+  for (size_t k = 0; k < 3; ++k) {
+    normals[k] = mesh.normals[triangle[k]];
+    if (placed.moves) {
+      const auto [first, part] = moments_around(point.time, mesh.moments.size());
+      normals[k] = between(mesh.moments[first].normals[triangle[k]],
+                           mesh.moments[first + 1].normals[triangle[k]], part);
+    }
+    if (!placed.is_identity) normals[k] = placed.normal_inverse.transposed_vector(normals[k]);
+  }
+  if (placed.orientation < 0) std::swap(normals[1], normals[2]);
+  return normals;
+}
+
 SceneGeometry::TangentFrame SceneGeometry::tangent_frame(const SurfacePoint& point, const Vec3f& normal,
                                                          int texcoord) const {
   const Instance& placed = instances_[point.instance];

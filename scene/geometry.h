@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "materials/material.h"
@@ -41,6 +42,9 @@ class SceneGeometry {
   /// World-space corners of a triangle in winding order (counter-clockwise seen from its front).
   std::array<Vec3f, 3> triangle(uint32_t instance, uint32_t primitive) const;
   std::array<Vec3f, 3> triangle(uint32_t instance, uint32_t primitive, float time) const;
+  /// Normals at these corners, world space, front side, of any length: between them it is those that are
+  /// interpolated, and then made unit vectors. Empty where a mesh has none.
+  std::optional<std::array<Vec3f, 3>> corner_normals(const SurfacePoint& point) const;
 
   SurfacePoint surface_point(const Ray& ray, const RawHit& hit) const;
   /// Point of a triangle by barycentrics, with its error bound; t and front are not set.

@@ -151,6 +151,7 @@ Rgb passing(const Scene& scene, const Interaction& at, const Vec3f& direction, P
   if (rays.alpha > narrow_alpha) return {0, 0, 0};
   passage.is_bent = true;
   passage.is_sharp = passage.is_sharp && rays.alpha == 0;
+  passage.has_normal_map = passage.has_normal_map || scene.material(at).has_normal_maps();
   return rays.transmitted;
 }
 

@@ -75,7 +75,8 @@ struct Passage {
   /// Light gets through, but bent, on other ways than this: `fraction` is what would pass if it went
   /// straight, along narrow lobes only.
   bool is_bent = false;
-  bool is_sharp = true;  ///< what bends it does so by sharp lobes alone
+  bool is_sharp = true;         ///< what bends it does so by sharp lobes alone
+  bool has_normal_map = false;  ///< of which some follow a normal texture
 };
 
 /// The one answer to how much light gets along a segment, its ends excluded: opaque surfaces, coverage, clear

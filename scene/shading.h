@@ -60,6 +60,9 @@ class Shading {
   /// Fraction of light that passes on undeflected, toward -wo.
   Rgb straight() const { return bsdf_.straight(wo_); }
 
+  /// What its delta lobes carry toward wo.
+  DeltaLobes delta() const { return bsdf_.delta(wo_); }
+
   /// Directions in world space.
   struct Specular {
     SpecularRays rays;

@@ -36,7 +36,8 @@ void warn_of_missing_light(const RenderResult& result, int max_depth, NoticeLog&
          {},
          fmt::format("lamps shine through glass that bends their light{}: up to {} of all light is not in "
                      "this picture and not in its error; {}",
-                     has_caustics ? ", on what mirrors and such glass show" : "", percent(missing.bent.share),
+                     has_caustics ? ", by lobes of some width or by normal textures" : "",
+                     percent(missing.bent.share),
                      has_caustics ? "an emissive mesh in place of the lamp, or glass without thickness, is "
                                     "rendered in full"
                                   : "--integrator path with --caustics auto brings it")});

@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are little-endian");
 static_assert(sizeof(RenderResult::Look) == 6 * sizeof(double));
-static_assert(sizeof(TileLight) == 10 * sizeof(float));
+static_assert(sizeof(TileLight) == 13 * sizeof(float));
 
 /// Constant bytes of constant values.
 template <typename Values>

@@ -15,7 +15,7 @@
 namespace vernier {
 
 struct CheckpointPreamble {
-  static constexpr uint32_t current_format = 5;
+  static constexpr uint32_t current_format = 6;
 
   std::array<char, 8> magic{'V', 'E', 'R', 'N', 'C', 'K', 'P', 'T'};
   uint32_t format = current_format;

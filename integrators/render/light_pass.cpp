@@ -10,8 +10,8 @@ namespace {
 
 /// Batches for a thread before a render looks up again.
 constexpr uint64_t batches_per_thread = 4;
-/// Rows of pixels that one thread adds to; each looks through all splats.
-constexpr int rows_per_band = 32;
+/// Rows of pixels that one thread adds to, of whole tiles; each looks through all splats.
+constexpr int rows_per_band = 2 * RenderState::tile_size;
 
 int half_of(uint64_t batch) { return int(batch % Film::halves); }
 
@@ -37,8 +37,12 @@ void LightPass::add(RenderState& state, const std::vector<Caught>& batches) cons
       const int half = half_of(state.light_batches + batch);
       const std::vector<Splat>& splats = batches[batch].splats;
       for (size_t i = 0; i < splats.size(); ++i) {
-        const auto& [x, y, radiance] = splats[i];
+        const auto& [x, y, radiance, is_beyond] = splats[i];
         if (y / rows_per_band != int(band)) continue;
+        if (is_beyond) {
+          state.light[size_t(state.tile_of(x, y))].beyond += radiance;
+          continue;
+        }
         result.film.splat(x, y, half, radiance);
         for (size_t layer = 0; layer < result.light.size(); ++layer)
           result.light[layer].film.splat(x, y, half, sorter_->part(batches[batch].parts[i], layer));

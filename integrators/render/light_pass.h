@@ -19,8 +19,8 @@ class LightPass {
   /// Refers to things that live as long.
   LightPass(const LightPaths& paths, const LightSorter* sorter) : paths_(paths), sorter_(sorter) {}
 
-  /// Batches when each pixel has so many camera samples. Of a picture of which a crop is rendered those of the
-  /// whole, so that crops are as the whole is.
+  /// Batches when each pixel has so many camera samples. Of a picture of which a crop is rendered those of
+  /// the whole, so that crops are as the whole is.
   uint64_t batches(uint32_t samples) const {
     const uint64_t paths = paths_.paths_per_sample() * samples;
     return (paths + Film::halves * batch_size - 1) / (Film::halves * batch_size) * Film::halves;

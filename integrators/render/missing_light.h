@@ -13,6 +13,7 @@ namespace vernier {
 struct TileLight {
   Rgb found{0, 0, 0};
   MissingLight missing;
+  Rgb beyond{0, 0, 0};  ///< the depth limit: of all light paths, at its pixels
   uint32_t samples = 0;
 
   void add(const Estimate& estimate) {
@@ -21,11 +22,12 @@ struct TileLight {
     ++samples;
   }
   bool is_plausible() const {
-    return is_finite(found) && is_finite(missing.bent) && is_finite(missing.depth);
+    return is_finite(found) && is_finite(missing.bent) && is_finite(missing.depth) && is_finite(beyond);
   }
   TileLight& operator+=(const TileLight& other) {
     found += other.found;
     missing += other.missing;
+    beyond += other.beyond;
     samples += other.samples;
     return *this;
   }

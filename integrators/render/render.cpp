@@ -41,7 +41,7 @@ class Renderer {
         options_(job.settings),
         backdrop_(job.backdrop),
         sorter_(job.sorter.is_empty() ? nullptr : &job.sorter),
-        has_caustics_(job.light_paths && job.light_paths->kind() == LightPathKind::caustics),
+        chains_(job.light_paths ? job.light_paths->chains() : nullptr),
         small_lamps_(job.light_paths ? job.light_paths->small_lamps() : nullptr),
         crop_(rendered_part(job.settings)),
         stop_(stop),
@@ -245,7 +245,7 @@ class Renderer {
     CameraSample sample = camera_samples_.get({full_x, full_y, half, index});
     std::optional<LightParts> parts;
     if (sorter_) parts.emplace();
-    const SampleContext context{spread(x, y, half), sorter_, parts ? &*parts : nullptr, has_caustics_,
+    const SampleContext context{spread(x, y, half), sorter_, parts ? &*parts : nullptr, chains_,
                                 small_lamps_};
     const Estimate estimate = integrator_.estimate(scene_, sample.ray, sample.sampler, context);
     ++totals.samples;
@@ -327,7 +327,7 @@ class Renderer {
   const RenderSettings& options_;
   const Backdrop& backdrop_;
   const LightSorter* sorter_;  ///< null: no light is kept apart
-  const bool has_caustics_;
+  const SpecularChains* chains_;
   const SmallLamps* small_lamps_;
   std::optional<LightPass> light_pass_;
   const Crop crop_;

@@ -2,6 +2,7 @@
 #include "integrators/render/render_state.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace vernier {
 namespace {
@@ -30,6 +31,8 @@ uint64_t accepted_samples(const Film& film) {
 MissingEstimate estimate_missing(std::vector<TileLight> tiles, const Film& film) {
   constexpr int size = RenderState::tile_size;
   const int columns = (film.width() + size - 1) / size;
+  const auto& of_halves = film.light_paths();
+  const uint64_t paths = std::accumulate(of_halves.begin(), of_halves.end(), uint64_t{0});
   for (size_t i = 0; film.has_splats() && i < tiles.size(); ++i) {
     const int x0 = int(i) % columns * size, y0 = int(i) / columns * size;
     const int x1 = std::min(x0 + size, film.width()), y1 = std::min(y0 + size, film.height());
@@ -37,7 +40,9 @@ MissingEstimate estimate_missing(std::vector<TileLight> tiles, const Film& film)
     for (int y = y0; y < y1; ++y)
       for (int x = x0; x < x1; ++x)
         for (int half = 0; half < Film::halves; ++half) sum += film.splat_mean(x, y, half) / Film::halves;
-    tiles[i].found += Rgb(Vec3f(sum * (double(tiles[i].samples) / ((x1 - x0) * (y1 - y0)))));
+    const double samples_per_pixel = double(tiles[i].samples) / ((x1 - x0) * (y1 - y0));
+    tiles[i].found += Rgb(Vec3f(sum * samples_per_pixel));
+    if (paths > 0) tiles[i].missing.depth += tiles[i].beyond * float(samples_per_pixel / double(paths));
   }
   return estimate_missing(tiles);
 }

@@ -38,6 +38,8 @@ struct RenderState {
     return ((width + tile_size - 1) / tile_size) * ((height + tile_size - 1) / tile_size);
   }
   int tile_columns() const { return (so_far.film.width() + tile_size - 1) / tile_size; }
+  /// The tile of a pixel.
+  int tile_of(int x, int y) const { return y / tile_size * tile_columns() + x / tile_size; }
   int tile_count() const { return tile_count(so_far.film.width(), so_far.film.height()); }
 
   static constexpr size_t bytes_per_pixel(bool adaptive, bool has_alpha, size_t light_layers = 0,
@@ -70,7 +72,7 @@ struct RenderState {
   uint64_t light_batches = 0;                    ///< of light paths (render/light_pass.h) that are done
 };
 
-/// Of tiles whose samples are spread evenly over their pixels, to which the splats of a film add light.
+/// Of tiles whose samples are spread evenly over their pixels, to which the light paths of a film add theirs.
 MissingEstimate estimate_missing(std::vector<TileLight> tiles, const Film& film);
 
 /// The name of a part of a state, as checkpoints call it, whose values no render can have led to and which

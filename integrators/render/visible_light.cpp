@@ -53,8 +53,8 @@ std::vector<Rgb> light_of_paths(const Scene& scene, const Camera& camera, const 
   Caught caught;
   for (uint64_t i = 0; i < count; ++i) paths.trace({i, 0}, caught);
   const float share = float(grid) / float(width) * float(grid) / float(height) / float(count);
-  for (const auto& [x, y, radiance] : caught.splats)
-    pixels[size_t(y * grid / height) * grid + size_t(x * grid / width)] += radiance * share;
+  for (const auto& [x, y, radiance, is_beyond] : caught.splats)
+    if (!is_beyond) pixels[size_t(y * grid / height) * grid + size_t(x * grid / width)] += radiance * share;
   return pixels;
 }
 

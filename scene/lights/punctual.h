@@ -27,6 +27,8 @@ class PunctualLight : public Light {
   };
   /// At a time of the shutter.
   Place place_at(float time) const;
+  /// A directional one.
+  bool is_at_infinity() const { return kind_ == PunctualLightDescription::Kind::directional; }
   float range() const { return range_; }
   /// Of the half angle that it shines into; -1: to all sides.
   float cos_outer() const { return kind_ == PunctualLightDescription::Kind::spot ? cos_outer_ : -1; }

@@ -233,7 +233,8 @@ MissingEstimate missing(const Scene& scene, const CameraDescription& view, Caust
   return render(scene, Camera(view, 24, 24), *integrator, settings, stop).missing;
 }
 
-// What light paths bring is missing no more; what mirrors show of it is.
+// What light paths bring is missing no more, nor what mirrors show of it, but for what a normal texture
+// bends.
 TEST(Caustics, LedgerTellsWhatRemains) {
   SceneBuilder bulb = scene_of(bodies[1]).add(point(bodies[1].lamp, 10));
   const Scene scene = bulb.build();
@@ -242,7 +243,15 @@ TEST(Caustics, LedgerTellsWhatRemains) {
   const Scene mirrored = bulb.add(parallelogram({-4, 0.1f, -4}, {0, 0, 8}, {8, 0, 0}), metal(0))
                              .add(box({-4, -1, -4}, {4, 4, 4}, true), diffuse(0.5f))
                              .build();
-  EXPECT_GT(missing(mirrored, under_the_body, Caustics::on).bent.share, 0.5);
+  EXPECT_GT(missing(mirrored, under_the_body, Caustics::off).bent.share, 0.5);
+  EXPECT_LT(missing(mirrored, under_the_body, Caustics::on).bent.share, 0.02);
+  MaterialDescription rippled = glass(0);
+  rippled.normal_texture.texture = 0;
+  const Scene mapped = bulb.texture(1, 1, {128})
+                           .add(box({-3, 2.2f, -3}, {3, 2.3f, 3}), rippled)
+                           .add(point({0, 2.5f, 0}, 100))
+                           .build();
+  EXPECT_GT(missing(mapped, under_the_body, Caustics::on).bent.share, 0.1);
 }
 
 // Light paths are followed where lamps shine on what mirrors or bends their light, and only there.

@@ -37,6 +37,7 @@ MissingEstimate missing(const Scene& scene, int max_depth, bool adaptive = true,
   render_options.width = render_options.height = 24;
   render_options.limits.spp = 64;
   render_options.adaptive = adaptive;
+  render_options.integrator_options = options;
   const std::atomic<bool> stop = false;
   return render(scene, Camera(camera, 24, 24), *make_integrator(std::string(integrator), options),
                 render_options, stop)
@@ -81,7 +82,9 @@ TEST(MissingLight, DepthLimitInAFurnace) {
   const Scene scene = SceneBuilder().add(box({-3, -3, -3}, {3, 15, 3}, true), wall).build();
   for (const int depth : {1, 4, 12})
     for (const bool adaptive : {false, true})
-      EXPECT_NEAR(missing(scene, depth, adaptive).depth.share, std::pow(0.8, depth), 0.03) << depth;
+      for (const char* integrator : {"path", "light"})
+        EXPECT_NEAR(missing(scene, depth, adaptive, integrator).depth.share, std::pow(0.8, depth), 0.03)
+            << depth << " " << integrator;
 }
 
 }  // namespace

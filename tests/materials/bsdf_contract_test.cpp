@@ -70,6 +70,34 @@ TEST(BsdfContract, StraightIsTheMeanOfSamples) {
   EXPECT_GT(clear, 10);
 }
 
+// So are the delta lobes, each way; of dispersing glass those of one color at a time are known.
+TEST(BsdfContract, DeltaLobesAreTheMeanOfSamples) {
+  int sharp = 0;
+  for (const BsdfCase& bsdf_case : bsdf_cases())
+    for (const Vec3f& wo : outgoing_directions()) {
+      SCOPED_TRACE(bsdf_case.name + " at cos " + std::to_string(wo.z));
+      constexpr int steps = 20000;
+      Vec3d reflected(0, 0, 0), transmitted(0, 0, 0);
+      for (int i = 0; i < steps; ++i) {
+        const auto sample = bsdf_case.bsdf.sample(wo, (float(i) + 0.5f) / steps, {0.3f, 0.6f});
+        if (!sample || !sample->is_delta()) continue;
+        (sample->is_transmitted() ? transmitted : reflected) += Vec3d(sample->weight) / steps;
+        if (bsdf_case.spread == 0 && sample->is_transmitted()) {
+          ASSERT_EQ(sample->eta, bsdf_case.bsdf.delta(wo).eta);
+        }
+      }
+      const DeltaLobes lobes = bsdf_case.bsdf.delta(wo);
+      sharp += !is_black(lobes.reflected);
+      for (int c = 0; c < 3; ++c) {
+        ASSERT_NEAR(reflected[c], lobes.reflected[c], 2e-3 * (1 + lobes.reflected[c]));
+        if (bsdf_case.spread == 0) {
+          ASSERT_NEAR(transmitted[c], lobes.transmitted[c], 2e-3 * (1 + lobes.transmitted[c]));
+        }
+      }
+    }
+  EXPECT_GT(sharp, 10);
+}
+
 // f(wo, wi) = f(wi, wo); through the boundary n^2-scaled, with the other side's BSDF.
 TEST(BsdfContract, Reciprocity) {
   for (const BsdfCase& bsdf_case : bsdf_cases()) {
