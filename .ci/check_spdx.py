@@ -13,7 +13,8 @@ COMMENTS = {
     (".cpp", ".h", ".hpp", ".js", ".cpp.in", ".h.in"): ("// ", ""),
     (".css",): ("/* ", " */"),
     (".py", ".sh", ".cmake", ".yml", ".yaml", "CMakeLists.txt", "Containerfile", "Doxyfile", ".ci/run", ".ci/check_format",
-     ".ci/test_sanitized", "tests/fuzz/run", "tests/farm/slurm", "tests/blender/run", "apps/blender/make_zip", ".toml"):
+     ".ci/test_sanitized", "tests/fuzz/run", "tests/farm/slurm", "tests/blender/run", "tests/rivals/run",
+     "apps/blender/make_zip", "apps/rivals/rivals", ".toml"):
         ("# ", ""),
 }
 

@@ -87,10 +87,16 @@ SceneGeometry::SceneGeometry(std::vector<MeshDescription> meshes,
     const bool is_placed = !instances_[i].is_identity || !instances[i].moments.empty();
     if (uses[instances_[i].mesh] == 1 && is_placed) bake(instances_[i], instances[i].moments);
   });
-  for (auto& mesh : meshes_) {
-    pad(mesh.positions);
-    for (MeshShape& shape : mesh.moments) pad(shape.positions);
-  }
+  extents_.resize(meshes_.size());
+  parallel_for(meshes_.size(), [&](size_t i) {
+    pad(meshes_[i].positions);
+    for (MeshShape& shape : meshes_[i].moments) pad(shape.positions);
+    extents_[i] = MeshExtent(meshes_[i].positions, meshes_[i].triangles);
+  });
+  middle_bounds_.resize(instances_.size());
+  parallel_for(instances_.size(), [&](size_t i) {
+    middle_bounds_[i] = extents_[instances_[i].mesh].bounds(instances_[i].to_world);
+  });
   for (uint32_t i = 0; i < instances_.size(); ++i) bounds_.add(bounds(i));
 }
 
@@ -99,15 +105,10 @@ bool SceneGeometry::moves() const {
 }
 
 Bounds SceneGeometry::bounds(uint32_t instance) const {
-  Bounds bounds;
-  const Transform& to_world = instances_[instance].to_world;
-  const auto add = [&](const std::vector<Vec3f>& positions) {
-    for (const Vec3f& p : positions)
-      if (const Vec3f world = to_world.point(p); is_finite(world)) bounds.add(world);
-  };
-  const MeshDescription& mesh = mesh_of(instance);
-  add(mesh.positions);
-  for (const MeshShape& shape : mesh.moments) add(shape.positions);
+  Bounds bounds = middle_bounds_[instance];
+  for (const MeshShape& shape : mesh_of(instance).moments)
+    for (const Vec3f& p : shape.positions)
+      if (is_finite(p)) bounds.add(p);
   return bounds;
 }
 
@@ -145,12 +146,16 @@ size_t SceneGeometry::instanced_triangles() const {
   return count;
 }
 
+std::array<Vec3f, 3> SceneGeometry::mesh_triangle(uint32_t instance, uint32_t primitive) const {
+  const MeshDescription& mesh = mesh_of(instance);
+  const auto [a, b, c] = mesh.triangles[primitive];
+  return {mesh.positions[a], mesh.positions[b], mesh.positions[c]};
+}
+
 std::array<Vec3f, 3> SceneGeometry::triangle(uint32_t instance, uint32_t primitive) const {
   const Instance& placed = instances_[instance];
-  const MeshDescription& mesh = meshes_[placed.mesh];
-  const Triangle& indices = mesh.triangles[primitive];
-  std::array<Vec3f, 3> corners;
-  for (size_t k = 0; k < 3; ++k) corners[k] = placed.to_world.point(mesh.positions[indices[k]]);
+  std::array<Vec3f, 3> corners = mesh_triangle(instance, primitive);
+  for (Vec3f& corner : corners) corner = placed.to_world.point(corner);
   if (placed.orientation < 0) std::swap(corners[1], corners[2]);
   return corners;
 }

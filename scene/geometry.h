@@ -8,6 +8,7 @@
 #include "materials/material.h"
 #include "scene/accel/accelerator.h"
 #include "scene/bounds.h"
+#include "scene/mesh_extent.h"
 #include "scene/surface_point.h"
 
 namespace vernier {
@@ -19,12 +20,19 @@ class SceneGeometry {
  public:
   /// Throws Error(usage) on moments that there cannot be.
   SceneGeometry(std::vector<MeshDescription> meshes, const std::vector<InstanceDescription>& instances);
+  SceneGeometry(const SceneGeometry&) = delete;
+  SceneGeometry& operator=(const SceneGeometry&) = delete;
 
   /// View of it for accelerators; valid as long as this object. No instance is filtered.
   Geometry view() const;
   /// Over all of the shutter.
   const Bounds& bounds() const { return bounds_; }
   Bounds bounds(uint32_t instance) const;
+  /// In the middle of the shutter: about the corners of its triangles, and which of these lies farthest.
+  const Bounds& middle_bounds(uint32_t instance) const { return middle_bounds_[instance]; }
+  FarthestCorner farthest_corner(uint32_t instance, const Vec3f& direction) const {
+    return extents_[instances_[instance].mesh].farthest(instances_[instance].to_world, direction);
+  }
 
   /// At how many moments it is known where an instance is; 0: it stands still.
   size_t moments(uint32_t instance) const { return mesh_of(instance).moments.size(); }
@@ -33,12 +41,18 @@ class SceneGeometry {
   size_t instance_count() const { return instances_.size(); }
   size_t triangle_count(uint32_t instance) const { return mesh_of(instance).triangles.size(); }
   uint32_t material_of(uint32_t instance) const { return instances_[instance].material; }
+  /// Instances of the same number have their mesh in common.
+  uint32_t mesh_number(uint32_t instance) const { return instances_[instance].mesh; }
+  /// From the space of its mesh, as this stores it.
+  const Transform& to_world(uint32_t instance) const { return instances_[instance].to_world; }
   bool has_colors(uint32_t instance) const { return !mesh_of(instance).colors.empty(); }
   /// Of the vertex colors; 1 without any.
   float least_alpha(uint32_t instance) const;
   size_t stored_triangles() const;
   size_t instanced_triangles() const;
 
+  /// Corners of a triangle in the space of its mesh, in the mesh's order.
+  std::array<Vec3f, 3> mesh_triangle(uint32_t instance, uint32_t primitive) const;
   /// World-space corners of a triangle in winding order (counter-clockwise seen from its front).
   std::array<Vec3f, 3> triangle(uint32_t instance, uint32_t primitive) const;
   std::array<Vec3f, 3> triangle(uint32_t instance, uint32_t primitive, float time) const;
@@ -80,6 +94,8 @@ class SceneGeometry {
 
   std::vector<MeshDescription> meshes_;
   std::vector<Instance> instances_;
+  std::vector<MeshExtent> extents_;    ///< by mesh
+  std::vector<Bounds> middle_bounds_;  ///< by instance
   Bounds bounds_;
 };
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include "core/base/fingerprint.h"
@@ -26,6 +27,37 @@ void note_without_volume(std::span<const InstanceDescription> instances, const s
   if (without.size() > 1) text += " (and " + std::to_string(without.size() - 1) + " more)";
   notices.push_back({Notice::Severity::warning, "KHR_materials_volume",
                      text + reason + ", so it has no inside: its surface is taken for thin-walled"});
+}
+
+/// The lights that one instance's triangles are, and by triangle the index of its own among them, -1 for
+/// none.
+std::vector<std::unique_ptr<TriangleLight>> triangle_lights(const SceneGeometry& geometry,
+                                                            const Material& material, uint32_t instance,
+                                                            std::vector<int32_t>& of_triangle) {
+  std::vector<std::unique_ptr<TriangleLight>> candidates(geometry.triangle_count(instance));
+  parallel_for(candidates.size(), [&](size_t primitive) {
+    auto light = std::make_unique<TriangleLight>(geometry, material, instance, uint32_t(primitive));
+    light->set_source({LightSource::Kind::instance, instance});
+    if (light->power({}) > 0) candidates[primitive] = std::move(light);
+  });
+  of_triangle.assign(candidates.size(), -1);
+  size_t count = 0;
+  for (size_t primitive = 0; primitive < candidates.size(); ++primitive) {
+    if (!candidates[primitive]) continue;
+    // The halves of a quad follow each other in what programs write.
+    const size_t next = primitive + 1;
+    const bool joined =
+        next < candidates.size() && candidates[next] && candidates[primitive]->join(*candidates[next]);
+    of_triangle[primitive] = int32_t(count);
+    if (joined) {
+      of_triangle[next] = int32_t(count);
+      candidates[next].reset();
+    }
+    if (count != primitive) candidates[count] = std::move(candidates[primitive]);
+    ++count;
+  }
+  candidates.resize(count);
+  return candidates;
 }
 
 }  // namespace
@@ -90,41 +122,33 @@ Geometry Scene::accelerated_geometry() const {
   return view;
 }
 
-void Scene::collect_lights(const SceneDescription& description) {
-  std::vector<std::unique_ptr<Light>> lights;
-  const auto add = [&](std::unique_ptr<Light> light) {
-    lights.push_back(std::move(light));
-    return int32_t(lights.size()) - 1;
-  };
-
-  triangle_lights_.resize(geometry_.instance_count());
-  for (uint32_t i = 0; i < geometry_.instance_count(); ++i) {
+std::vector<std::unique_ptr<Light>> Scene::collect_triangle_lights() {
+  std::vector<std::vector<std::unique_ptr<TriangleLight>>> of_instances(geometry_.instance_count());
+  triangle_lights_.resize(of_instances.size());
+  parallel_for(of_instances.size(), [&](size_t i) {
     const Material& material = materials_[material_of_instance_[i]];
-    if (!material.is_emissive() || material.is_unlit()) continue;
-    std::vector<std::unique_ptr<TriangleLight>> candidates(geometry_.triangle_count(i));
-    parallel_for(candidates.size(), [&](size_t primitive) {
-      auto light = std::make_unique<TriangleLight>(geometry_, material, i, uint32_t(primitive));
-      light->set_source({LightSource::Kind::instance, i});
-      if (light->power(bounds()) > 0) candidates[primitive] = std::move(light);
-    });
-    triangle_lights_[i].assign(candidates.size(), -1);
-    for (size_t primitive = 0; primitive < candidates.size(); ++primitive) {
-      if (!candidates[primitive]) continue;
-      // The halves of a quad follow each other in what programs write.
-      const size_t next = primitive + 1;
-      const bool joined =
-          next < candidates.size() && candidates[next] && candidates[primitive]->join(*candidates[next]);
-      triangle_lights_[i][primitive] = add(std::move(candidates[primitive]));
-      if (joined) triangle_lights_[i][next] = triangle_lights_[i][primitive++];
-    }
+    if (material.is_emissive() && !material.is_unlit())
+      of_instances[i] = triangle_lights(geometry_, material, uint32_t(i), triangle_lights_[i]);
+  });
+  std::vector<std::unique_ptr<Light>> lights;
+  for (size_t i = 0; i < of_instances.size(); ++i) {
+    for (int32_t& light : triangle_lights_[i])
+      if (light >= 0) light += int32_t(lights.size());
+    auto own = std::move(of_instances[i]);
+    std::move(own.begin(), own.end(), std::back_inserter(lights));
   }
+  return lights;
+}
+
+void Scene::collect_lights(const SceneDescription& description) {
+  std::vector<std::unique_ptr<Light>> lights = collect_triangle_lights();
   for (uint32_t i = 0; i < description.lights.size(); ++i) {
     auto light = std::make_unique<PunctualLight>(description.lights[i]);
     light->set_source({LightSource::Kind::lamp, i});
     if (!(light->power(bounds()) > 0)) continue;
     const PunctualLight& lamp = *light;
-    const auto index = uint32_t(add(std::move(light)));
-    if (lamp.bounds()) lamps_.add(lamp, index);
+    lights.push_back(std::move(light));
+    if (lamp.bounds()) lamps_.add(lamp, uint32_t(lights.size() - 1));
   }
   if (description.environment) add_environment(description.environment, lights);
   moves_ = geometry_.moves() || std::any_of(description.lights.begin(), description.lights.end(),

@@ -105,6 +105,7 @@ class Scene {
  private:
   LightReceiver receiver(const SurfacePoint& point) const;
   void compile_materials(const SceneDescription& description);
+  std::vector<std::unique_ptr<Light>> collect_triangle_lights();
   void collect_lights(const SceneDescription& description);
   void set_lights(std::vector<std::unique_ptr<Light>> lights);
   void collect_ground_light();

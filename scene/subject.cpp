@@ -3,6 +3,7 @@
 
 #include <ImathMatrixAlgo.h>
 
+#include <map>
 #include <numeric>
 
 #include "core/base/parallel.h"
@@ -38,36 +39,53 @@ Value over_blocks(size_t count, const Reduce& reduce, const Value& start) {
   });
 }
 
-/// The point found so far that lies farthest along a direction.
-struct Farthest {
-  Vec3f point{0, 0, 0};
-  float along = -std::numeric_limits<float>::infinity();
-
-  void add(const Farthest& other) {
-    if (other.along > along) *this = other;
-  }
-};
-
-/// Sums over triangles, weighted by area: of n n^T, whose largest eigenvector is the normal of something
-/// flat, and of n.
-struct NormalSums {
-  Imath::M33d tensor{0, 0, 0, 0, 0, 0, 0, 0, 0};
-  Vec3d normal{0, 0, 0};
-
-  void add(const NormalSums& other) {
-    tensor += other.tensor;
-    normal += other.normal;
-  }
-};
-
-Bounds bounds_of(const SceneGeometry& geometry, uint32_t instance) {
+/// Of the triangles that `corners_of` gives by their number.
+template <typename CornersOf>
+NormalSums sum_normals(size_t count, const CornersOf& corners_of) {
   return over_blocks(
-      geometry.triangle_count(instance),
-      [&](Bounds& bounds, uint32_t i) {
-        for (const Vec3f& p : geometry.triangle(instance, i))
-          if (is_finite(p)) bounds.add(p);
+      count,
+      [&](NormalSums& sum, uint32_t i) {
+        const auto [a, b, c] = corners_of(i);
+        const Vec3d n = cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a));
+        const double area = length(n);
+        if (!(area > 0) || !std::isfinite(area)) return;
+        sum.normal += n;
+        sum.tensor += Imath::outerProduct(n, n) * (1 / area);
       },
-      Bounds{});
+      NormalSums{});
+}
+
+NormalSums sum_in_world(const SceneGeometry& geometry, uint32_t instance) {
+  return sum_normals(geometry.triangle_count(instance),
+                     [&](uint32_t i) { return geometry.triangle(instance, i); });
+}
+
+NormalSums sum_in_mesh(const SceneGeometry& geometry, uint32_t instance) {
+  return sum_normals(geometry.triangle_count(instance),
+                     [&](uint32_t i) { return geometry.mesh_triangle(instance, i); });
+}
+
+/// How much larger a map makes things that it turns and mirrors, but does not distort; 0: it does distort.
+double scale_of_similarity(const Transform& map) {
+  const Vec3d x(map.x), y(map.y), z(map.z);
+  const double square_scale = length_squared(x), tolerance = 1e-5 * square_scale;
+  const auto is_small = [&](double value) { return std::abs(value) <= tolerance; };
+  const bool keeps_shape = is_small(length_squared(y) - square_scale) &&
+                           is_small(length_squared(z) - square_scale) && is_small(dot(x, y)) &&
+                           is_small(dot(y, z)) && is_small(dot(z, x));
+  return keeps_shape ? std::sqrt(square_scale) : 0;
+}
+
+/// Sums of a mesh that a similarity of linear part M and scale s places: normals of triangles become s M n
+/// (a mirrored instance has its winding turned), so the tensor becomes M T M^T.
+NormalSums placed(const NormalSums& mesh, const Transform& map, double scale) {
+  // Imath multiplies rows, so its matrix is the transposed one.
+  const Imath::M33d transposed(map.x.x, map.x.y, map.x.z, map.y.x, map.y.y, map.y.z, map.z.x, map.z.y,
+                               map.z.z);
+  NormalSums sums;
+  sums.tensor = transposed.transposed() * mesh.tensor * transposed;
+  sums.normal = (mesh.normal * transposed) * scale;
+  return sums;
 }
 
 /// Whether most of a surface faces a point that it lies around.
@@ -91,7 +109,7 @@ bool is_inside_out(const SceneGeometry& geometry, uint32_t instance, const Vec3f
 
 Subject::Subject(const SceneGeometry& geometry) : geometry_(geometry) {
   for (uint32_t i = 0; i < geometry.instance_count(); ++i)
-    if (const Bounds bounds = bounds_of(geometry, i); !bounds.empty()) parts_.push_back({i, bounds});
+    if (const Bounds& bounds = geometry.middle_bounds(i); !bounds.empty()) parts_.push_back({i, bounds});
   std::stable_sort(parts_.begin(), parts_.end(),
                    [](const Part& a, const Part& b) { return a.bounds.radius() < b.bounds.radius(); });
   std::vector<Bounds> up_to(parts_.size());
@@ -122,38 +140,48 @@ Bounds Subject::bounds_to_see() const {
 }
 
 Vec3f Subject::farthest(const Vec3f& direction) const {
-  Farthest best;
+  FarthestCorner best;
   // From the largest, which has the best chance; what cannot reach as far is not looked at.
   for (auto part = parts_.rbegin(); part != parts_.rend(); ++part) {
     const Vec3f corner(direction.x > 0 ? part->bounds.upper.x : part->bounds.lower.x,
                        direction.y > 0 ? part->bounds.upper.y : part->bounds.lower.y,
                        direction.z > 0 ? part->bounds.upper.z : part->bounds.lower.z);
     if (dot(corner, direction) <= best.along) continue;
-    best.add(over_blocks(
-        geometry_.triangle_count(part->instance),
-        [&](Farthest& far, uint32_t i) {
-          for (const Vec3f& p : geometry_.triangle(part->instance, i))
-            if (is_finite(p)) far.add({p, dot(p, direction)});
-        },
-        Farthest{}));
+    const FarthestCorner found = geometry_.farthest_corner(part->instance, direction);
+    if (found.along > best.along) best = found;
   }
   return best.point;
 }
 
-std::optional<Vec3f> Subject::flat_normal(const Vec3f& viewer) const {
-  NormalSums sums;
+NormalSums Subject::normal_sums() const {
+  // Those that share a mesh need one look at its triangles.
+  std::map<uint32_t, std::pair<uint32_t, size_t>>
+      shared;  // by mesh: one of its instances, how many there are
   for (const Part& part : parts_)
-    sums.add(over_blocks(
-        geometry_.triangle_count(part.instance),
-        [&](NormalSums& sum, uint32_t i) {
-          const auto [a, b, c] = geometry_.triangle(part.instance, i);
-          const Vec3d n = cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a));
-          const double area = length(n);
-          if (!(area > 0) || !std::isfinite(area)) return;
-          sum.normal += n;
-          sum.tensor += Imath::outerProduct(n, n) * (1 / area);
-        },
-        NormalSums{}));
+    ++shared.try_emplace(geometry_.mesh_number(part.instance), part.instance, 0).first->second.second;
+  std::erase_if(shared, [](const auto& use) { return use.second.second == 1; });
+  std::map<uint32_t, NormalSums> of_meshes;
+  for (const auto& [mesh, use] : shared) of_meshes.emplace(mesh, sum_in_mesh(geometry_, use.first));
+
+  NormalSums all;
+  std::vector<NormalSums> batch;
+  constexpr size_t batch_size = 1024;
+  for (size_t first = 0; first < parts_.size(); first += batch_size) {
+    batch.resize(std::min(batch_size, parts_.size() - first));
+    parallel_for(batch.size(), [&](size_t i) {
+      const uint32_t instance = parts_[first + i].instance;
+      const auto mesh = of_meshes.find(geometry_.mesh_number(instance));
+      const double scale = mesh == of_meshes.end() ? 0 : scale_of_similarity(geometry_.to_world(instance));
+      batch[i] = scale > 0 ? placed(mesh->second, geometry_.to_world(instance), scale)
+                           : sum_in_world(geometry_, instance);
+    });
+    for (const NormalSums& sums : batch) all.add(sums);
+  }
+  return all;
+}
+
+std::optional<Vec3f> Subject::flat_normal(const Vec3f& viewer) const {
+  const NormalSums sums = normal_sums();
   if (!(sums.tensor[0][0] + sums.tensor[1][1] + sums.tensor[2][2] > 0)) return std::nullopt;
   Imath::M33d axes, tensor = sums.tensor;
   Vec3d areas;

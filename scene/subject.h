@@ -1,12 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <ImathMatrix.h>
+
 #include <optional>
 #include <vector>
 
 #include "scene/geometry.h"
 
 namespace vernier {
+
+/// Sums over triangles, weighted by area: of n n^T, whose largest eigenvector is the normal of something
+/// flat, and of n.
+struct NormalSums {
+  Imath::M33d tensor{0, 0, 0, 0, 0, 0, 0, 0, 0};
+  Vec3d normal{0, 0, 0};
+
+  void add(const NormalSums& other) {
+    tensor += other.tensor;
+    normal += other.normal;
+  }
+};
 
 /// What a picture of a scene is of: its instances but for their setting, in a view of which they would be
 /// lost. Setting is what is flat (the ground, a backdrop) or seen from inside (the dome of a sky), and ten
@@ -42,6 +56,8 @@ class Subject {
     uint32_t instance;
     Bounds bounds;
   };
+
+  NormalSums normal_sums() const;
 
   const SceneGeometry& geometry_;
   std::vector<Part> parts_;

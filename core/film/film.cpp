@@ -7,7 +7,7 @@
 namespace vernier {
 
 void Film::merge(const Film& other) {
-  const auto merge_cells = [](std::vector<Cell>& cells, const std::vector<Cell>& others) {
+  const auto merge_cells = [](ZeroedVector<Cell>& cells, const ZeroedVector<Cell>& others) {
     for (size_t i = 0; i < cells.size(); ++i) {
       Cell& cell = cells[i];
       const Cell& more = others[i];

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/zeroed_vector.h"
 #include "vernier/image.h"
 
 namespace vernier {
@@ -145,9 +146,9 @@ class Film {
   size_t index(int x, int y, int half) const { return (size_t(y) * width_ + x) * halves + half; }
 
   int width_, height_;
-  std::vector<Cell> cells_;
-  std::vector<double> transparency_;  ///< sums, by cell; empty without alpha
-  std::vector<Cell> splats_;          ///< by cell, of the light paths that have brought any; empty without
+  ZeroedVector<Cell> cells_;
+  ZeroedVector<double> transparency_;  ///< sums, by cell; empty without alpha
+  ZeroedVector<Cell> splats_;          ///< by cell, of the light paths that have brought any; empty without
   std::array<uint64_t, halves> light_paths_{};
 };
 

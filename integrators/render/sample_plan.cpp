@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "core/base/parallel.h"
 
@@ -13,49 +14,81 @@ namespace {
 /// What SamplePlan::Numbers can hold.
 constexpr double most_countable = 65535;
 
+/// Pixels that one task looks at. Sums are rounded by these and not by the threads there are.
+constexpr size_t block_size = 1 << 14;
+
+/// Calls body(block, begin, end) for each block of `count` pixels, at once.
+template <typename Body>
+void for_each_block(size_t count, const Body& body) {
+  parallel_for((count + block_size - 1) / block_size, [&](size_t block) {
+    body(block, block * block_size, std::min(count, (block + 1) * block_size));
+  });
+}
+
+/// Sums of value(i) over each block.
+template <typename Value>
+std::vector<double> block_sums(size_t count, const Value& value) {
+  std::vector<double> sums((count + block_size - 1) / block_size);
+  for_each_block(count, [&](size_t block, size_t begin, size_t end) {
+    double sum = 0;
+    for (size_t i = begin; i < end; ++i) sum += value(i);
+    sums[block] = sum;
+  });
+  return sums;
+}
+
+template <typename Value>
+double sum(size_t count, const Value& value) {
+  const std::vector<double> sums = block_sums(count, value);
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
 /// Samples of one half in a pass of `size` samples a pixel, by the other half's guide.
 class HalfPlan {
  public:
   HalfPlan(const SamplesDrawn& drawn, int which, const SampleGuide& guide, uint32_t size)
-      : needs_(guide.needs()), done_(needs_.size()), budget_(size / 2.0 * double(needs_.size())) {
-    size_t needy = 0;
-    for (size_t i = 0; i < done_.size(); ++i) {
-      done_[i] = drawn.guiding[size_t(which)] + drawn.extra[i * Film::halves + size_t(which)];
-      done_sum_ += done_[i];
-      need_sum_ += needs_[i];
-      needy += needs_[i] > 0;
-    }
-    const auto calm = double(needs_.size() - needy);
+      : drawn_(drawn), which_(which), needs_(guide.needs()), budget_(size / 2.0 * double(needs_.size())) {
+    done_sum_ = sum(needs_.size(), [&](size_t i) { return done(i); });
+    need_sum_ = sum(needs_.size(), [&](size_t i) { return needs_[i]; });
+    const double needy = sum(needs_.size(), [&](size_t i) { return needs_[i] > 0; });
+    const double calm = double(needs_.size()) - needy;
     least_ = std::floor(size * SamplePlan::guiding_part / 2);
     // At most eight times the even share, so that a plan made on little evidence does not spend everything;
     // up to 64 times where so few pixels need samples that the rest would have no place.
-    const double all = needy > 0 ? (budget_ - calm * least_) / double(needy) : 0;
+    const double all = needy > 0 ? (budget_ - calm * least_) / needy : 0;
     most_ = std::min(std::clamp(all, size * 4.0, size * 32.0), most_countable);
-    calm_ = calm > 0 ? std::max(least_, (budget_ - double(needy) * most_) / calm) : least_;
-  }
-
-  static constexpr size_t bytes_per_pixel() {
-    return sizeof(decltype(needs_)::value_type) + sizeof(decltype(done_)::value_type);
+    calm_ = calm > 0 ? std::max(least_, (budget_ - needy * most_) / calm) : least_;
   }
 
   /// Sets this half's counts, on average half of `size`.
-  void fill(std::vector<uint16_t>& counts, int which) const {
+  void fill(std::vector<uint16_t>& counts) const {
     const double factor = find_factor();
-    // Fractions are carried along the row of pixels so that the total is met.
-    double carried = 0;
-    for (size_t i = 0; i < needs_.size(); ++i) {
-      carried += wanted(i, factor) - least_;
-      const double whole = std::floor(carried);
-      carried -= whole;
-      counts[i * Film::halves + size_t(which)] = uint16_t(std::min(least_ + whole, most_countable));
-    }
+    // Fractions are carried along the row of pixels so that the total is met; how much comes into a block is
+    // known from the sums over those before.
+    std::vector<double> carried =
+        block_sums(needs_.size(), [&](size_t i) { return wanted(i, factor) - least_; });
+    std::exclusive_scan(carried.begin(), carried.end(), carried.begin(), 0.0);
+    for_each_block(needs_.size(), [&](size_t block, size_t begin, size_t end) {
+      double rest = carried[block] - std::floor(carried[block]);
+      for (size_t i = begin; i < end; ++i) {
+        rest += wanted(i, factor) - least_;
+        const double whole = std::floor(rest);
+        rest -= whole;
+        counts[i * Film::halves + size_t(which_)] = uint16_t(std::min(least_ + whole, most_countable));
+      }
+    });
   }
 
  private:
+  /// Samples that the half has.
+  double done(size_t i) const {
+    return drawn_.guiding[size_t(which_)] + drawn_.extra[i * Film::halves + size_t(which_)];
+  }
+
   /// The best total of a pixel is in proportion to its need (Neyman allocation). Where that has been passed
   /// already, or the bounds bite, the samples go elsewhere, by way of the factor.
   double wanted(size_t i, double factor) const {
-    return needs_[i] > 0 ? std::clamp(factor * needs_[i] - done_[i], least_, most_) : calm_;
+    return needs_[i] > 0 ? std::clamp(factor * needs_[i] - done(i), least_, most_) : calm_;
   }
 
   /// The factor that spends the budget, to a thousandth. Steps in proportion find it in a few rounds, unless
@@ -63,8 +96,7 @@ class HalfPlan {
   double find_factor() const {
     double factor = (done_sum_ + budget_) / need_sum_, below = 0, above = 0;
     for (int round = 0; round < 200; ++round) {
-      double spent = 0;
-      for (size_t i = 0; i < needs_.size(); ++i) spent += wanted(i, factor);
+      const double spent = sum(needs_.size(), [&](size_t i) { return wanted(i, factor); });
       if (std::abs(spent - budget_) < 0.001 * budget_) break;
       (spent < budget_ ? below : above) = factor;
       if (round < 20)
@@ -75,9 +107,10 @@ class HalfPlan {
     return factor;
   }
 
-  std::vector<float> needs_;
-  std::vector<double> done_;  ///< samples that the half has
-  double budget_;             ///< samples to spend
+  const SamplesDrawn& drawn_;
+  const int which_;
+  const std::vector<float> needs_;
+  double budget_;  ///< samples to spend
   double least_ = 0, most_ = 0;
   double calm_ = 0;  ///< of a pixel that needs none
   double done_sum_ = 0, need_sum_ = 0;
@@ -118,7 +151,7 @@ std::vector<float> SampleGuide::needs() const {
   return smooth;
 }
 
-size_t SamplePlan::planning_bytes_per_pixel() { return Film::halves * HalfPlan::bytes_per_pixel(); }
+size_t SamplePlan::planning_bytes_per_pixel() { return SampleGuide::needs_bytes_per_pixel(); }
 
 SamplePlan SamplePlan::uniform(const SamplesDrawn& drawn, uint32_t size) {
   Numbers plan;
@@ -136,7 +169,7 @@ SamplePlan SamplePlan::adaptive(const SamplesDrawn& drawn, std::span<const Sampl
   plan.guiding = uint32_t(size * guiding_part / 2);
   plan.counts.resize(drawn.extra.size());
   for (int half = 0; half < Film::halves; ++half)
-    HalfPlan(drawn, half, guides[size_t(1 - half)], size).fill(plan.counts, half);
+    HalfPlan(drawn, half, guides[size_t(1 - half)], size).fill(plan.counts);
   return SamplePlan(std::move(plan));
 }
 

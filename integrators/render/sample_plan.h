@@ -67,6 +67,8 @@ class SampleGuide {
   /// single sample over sqrt(r^2 + 0.01), root mean square over 3 x 3 pixels, since one pixel's own figure is
   /// too noisy to act on and a neighbour's surprise is a warning.
   std::vector<float> needs() const;
+  /// What that takes: of each pixel by itself, and with its neighbours.
+  static constexpr size_t needs_bytes_per_pixel() { return 2 * sizeof(float); }
 
   /// All that is known, to be stored and read back on the same kind of machine.
   std::span<const std::byte> bytes() const { return std::as_bytes(std::span(cells_)); }
@@ -89,7 +91,7 @@ class SampleGuide {
   static float squared_need(const Cell& cell);
 
   int width_, height_;
-  std::vector<Cell> cells_;
+  ZeroedVector<Cell> cells_;
 };
 
 /// How many samples each pixel and half gets in a pass. A pass need not be completed at once: any first part

@@ -5,9 +5,9 @@
 #include <atomic>
 #include <bit>
 #include <chrono>
-#include <deque>
 #include <mutex>
 
+#include "core/base/parallel.h"
 #include "core/math/rounding.h"
 #include "scene/accel/instance.h"
 #include "scene/accel/query.h"
@@ -153,6 +153,20 @@ RTCRayHit embree_ray(const Ray& ray, bool robust) {
   return rayhit;
 }
 
+/// By instance, how much longer the way is at most in the space of its mesh; 0: rays are not carried there.
+std::vector<double> stretches_of(const Geometry& geometry) {
+  std::vector<double> stretches(geometry.instances.size());
+  parallel_for(stretches.size(), [&](size_t i) {
+    const GeometryInstance& instance = geometry.instances[i];
+    if (geometry.meshes[instance.mesh].triangles.empty() || instance.to_world.is_identity()) return;
+    const auto to_mesh = WorldToMesh::of(instance.to_world);
+    if (!to_mesh) return;
+    const Vec3d stretch = abs(to_mesh->x) + abs(to_mesh->y) + abs(to_mesh->z);
+    stretches[i] = std::max({stretch.x, stretch.y, stretch.z});
+  });
+  return stretches;
+}
+
 class EmbreeAccelerator final : public Accelerator {
  public:
   EmbreeAccelerator(const Geometry& geometry, RTCSceneFlags flags);
@@ -191,10 +205,21 @@ class EmbreeAccelerator final : public Accelerator {
            ray.t_max > 0;
   }
 
-  void add_instance(uint32_t id, const Geometry& geometry, RTCSceneFlags flags);
+  /// The scenes of the meshes that instances place, all at once: many small ones would otherwise leave
+  /// threads idle.
+  void build_shared_meshes(const Geometry& geometry, const std::vector<double>& stretches,
+                           RTCSceneFlags flags);
+  /// Called for many instances at once.
+  void add_instance(uint32_t id, const Geometry& geometry, bool is_placed);
+  bool is_filtered(const GeometryInstance& instance) const { return instance.filtered && filter_; }
+  /// Index in mesh_scenes_.
+  size_t shared_scene(const GeometryInstance& instance) const {
+    return 2 * size_t(instance.mesh) + is_filtered(instance);
+  }
   ScenePtr new_scene(RTCSceneFlags flags);
   void commit(RTCScene scene);
-  void attach_mesh(RTCScene scene, const GeometryMesh& mesh, uint32_t id, bool filtered);
+  void attach_mesh(RTCScene scene, const GeometryMesh& mesh, const std::vector<Triangle>& hittable,
+                   uint32_t id, bool filtered);
   void attach_placed(RTCScene mesh_scene, const Transform& to_world, uint32_t id);
   void check_errors();
 
@@ -211,9 +236,14 @@ class EmbreeAccelerator final : public Accelerator {
   bool robust_;
   float farthest_origin_ = 1e18f;
   AcceleratorStats stats_;
-  std::vector<std::vector<Vec3f>> baked_;
-  std::deque<std::vector<Triangle>>
-      hittable_;  ///< index lists of meshes some of whose triangles are left out
+  /// A mesh in the world whose instance's map has no inverse.
+  struct BakedMesh {
+    std::vector<Vec3f> positions;
+    std::vector<Triangle> hittable;
+  };
+  std::vector<std::unique_ptr<BakedMesh>> baked_;  ///< by instance; null: placed by its map
+  std::vector<std::vector<Triangle>>
+      hittable_;  ///< by mesh: its triangles where some are left out, else empty
   DevicePtr device_;
   std::vector<ScenePtr> mesh_scenes_;  ///< two a mesh: unfiltered, filtered; null where not needed
   ScenePtr scene_;
@@ -232,36 +262,56 @@ EmbreeAccelerator::EmbreeAccelerator(const Geometry& geometry, RTCSceneFlags fla
   const auto start = std::chrono::steady_clock::now();
   if (has_clear_instances(geometry))
     for (const auto& instance : geometry.instances) clear_.push_back(instance.clear);
+  // Embree's robust mode would hit triangles without area; those with such indices it leaves out.
+  hittable_.resize(geometry.meshes.size());
+  parallel_for(hittable_.size(), [&](size_t i) { hittable_[i] = without_unhittable(geometry.meshes[i]); });
+  const std::vector<double> stretches = stretches_of(geometry);
+  for (const double stretch : stretches)
+    farthest_origin_ = std::min(farthest_origin_, static_cast<float>(1e18 / std::max(stretch, 1.0)));
+  build_shared_meshes(geometry, stretches, flags);
   scene_ = new_scene(flags);
-  for (uint32_t id = 0; id < geometry.instances.size(); ++id) add_instance(id, geometry, flags);
+  baked_.resize(geometry.instances.size());
+  parallel_for(baked_.size(), [&](size_t id) { add_instance(uint32_t(id), geometry, stretches[id] > 0); });
   commit(scene_.get());
   stats_.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   stats_.bytes = static_cast<size_t>(bytes_.load());
-  for (const auto& positions : baked_) stats_.bytes += positions.size() * sizeof(Vec3f);
+  for (const auto& mesh : baked_)
+    if (mesh)
+      stats_.bytes += mesh->positions.size() * sizeof(Vec3f) + mesh->hittable.size() * sizeof(Triangle);
   for (const auto& triangles : hittable_) stats_.bytes += triangles.size() * sizeof(Triangle);
 }
 
-void EmbreeAccelerator::add_instance(uint32_t id, const Geometry& geometry, RTCSceneFlags flags) {
+void EmbreeAccelerator::build_shared_meshes(const Geometry& geometry, const std::vector<double>& stretches,
+                                            RTCSceneFlags flags) {
+  std::vector<bool> is_shared(mesh_scenes_.size());
+  for (size_t i = 0; i < stretches.size(); ++i)
+    if (stretches[i] > 0) is_shared[shared_scene(geometry.instances[i])] = true;
+  std::vector<size_t> shared;
+  for (size_t i = 0; i < is_shared.size(); ++i)
+    if (is_shared[i]) shared.push_back(i);
+  parallel_for(shared.size(), [&](size_t i) {
+    const size_t mesh = shared[i] / 2;
+    ScenePtr scene = new_scene(flags);
+    attach_mesh(scene.get(), geometry.meshes[mesh], hittable_[mesh], 0, shared[i] % 2);
+    commit(scene.get());
+    mesh_scenes_[shared[i]] = std::move(scene);
+  });
+}
+
+void EmbreeAccelerator::add_instance(uint32_t id, const Geometry& geometry, bool is_placed) {
   const GeometryInstance& instance = geometry.instances[id];
   const GeometryMesh& mesh = geometry.meshes[instance.mesh];
   if (mesh.triangles.empty()) return;
-  const bool filtered = instance.filtered && filter_;
   if (instance.to_world.is_identity()) {
-    attach_mesh(scene_.get(), mesh, id, filtered);
-  } else if (const auto to_mesh = WorldToMesh::of(instance.to_world)) {
-    ScenePtr& shared = mesh_scenes_[2 * instance.mesh + filtered];
-    if (!shared) {
-      shared = new_scene(flags);
-      attach_mesh(shared.get(), mesh, 0, filtered);
-      commit(shared.get());
-    }
-    attach_placed(shared.get(), instance.to_world, id);
-    const Vec3d stretch = abs(to_mesh->x) + abs(to_mesh->y) + abs(to_mesh->z);
-    const double largest = std::max({stretch.x, stretch.y, stretch.z, 1.0});
-    farthest_origin_ = std::min(farthest_origin_, static_cast<float>(1e18 / largest));
+    attach_mesh(scene_.get(), mesh, hittable_[instance.mesh], id, is_filtered(instance));
+  } else if (is_placed) {
+    attach_placed(mesh_scenes_[shared_scene(instance)].get(), instance.to_world, id);
   } else {
-    baked_.push_back(bake_positions(mesh, instance.to_world));
-    attach_mesh(scene_.get(), {baked_.back(), mesh.triangles}, id, filtered);
+    baked_[id] = std::make_unique<BakedMesh>();
+    baked_[id]->positions = bake_positions(mesh, instance.to_world);
+    const GeometryMesh baked{baked_[id]->positions, mesh.triangles};
+    baked_[id]->hittable = without_unhittable(baked);
+    attach_mesh(scene_.get(), baked, baked_[id]->hittable, id, is_filtered(instance));
   }
 }
 
@@ -278,11 +328,9 @@ void EmbreeAccelerator::commit(RTCScene scene) {
   check_errors();
 }
 
-void EmbreeAccelerator::attach_mesh(RTCScene scene, const GeometryMesh& mesh, uint32_t id, bool filtered) {
-  std::span<const Triangle> triangles = mesh.triangles;
-  // Its robust mode would hit triangles without area; those with such indices it leaves out.
-  if (auto hittable = without_unhittable(mesh); !hittable.empty())
-    triangles = hittable_.emplace_back(std::move(hittable));
+void EmbreeAccelerator::attach_mesh(RTCScene scene, const GeometryMesh& mesh,
+                                    const std::vector<Triangle>& hittable, uint32_t id, bool filtered) {
+  const std::span<const Triangle> triangles = hittable.empty() ? mesh.triangles : hittable;
   RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
   const auto set_vertices = [&](unsigned moment, std::span<const Vec3f> positions) {
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, moment, RTC_FORMAT_FLOAT3, positions.data(),

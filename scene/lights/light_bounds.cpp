@@ -49,6 +49,23 @@ float cosine_of_spread(double spread) {
   return std::max(next_float_down(float(std::cos(spread))), -1.f);
 }
 
+/// Whether the cone of `inner`, its axis turned about where `turned`, certainly lies within that of `outer`.
+/// Told without the angles, each of which costs more than all of this; near the limit the answer is no.
+bool is_surely_within(const LightBounds& inner, bool turned, const LightBounds& outer) {
+  const double cos_inner = inner.cos_spread, cos_outer = outer.cos_spread;
+  if (!(cos_inner >= cos_outer && cos_outer > -1 && cos_inner <= 1)) return false;
+  const Vec3d a(inner.axis), b(outer.axis);
+  const double square_a = length_squared(a), square_b = length_squared(b);
+  constexpr double nearly_unit = 1e-4;
+  if (!(std::abs(square_a - 1) < nearly_unit && std::abs(square_b - 1) < nearly_unit)) return false;
+  if (turned ? inner.axis == -outer.axis : inner.axis == outer.axis) return true;
+  const double room = cos_outer * cos_inner + std::sqrt((1 - square(cos_outer)) * (1 - square(cos_inner)));
+  return (turned ? -dot(a, b) : dot(a, b)) > (room + 1e-9) * std::sqrt(square_a * square_b);
+}
+
+/// As cosine_of_spread() has it of the angle of a cosine.
+float cosine_kept(float cosine) { return cosine == 1 ? 1 : std::max(next_float_down(cosine), -1.f); }
+
 }  // namespace
 
 LightBounds merge(const LightBounds& a, const LightBounds& b) {
@@ -60,6 +77,17 @@ LightBounds merge(const LightBounds& a, const LightBounds& b) {
   both.power = a.power + b.power;
   both.two_sided = a.two_sided || b.two_sided;
   both.cos_emission = std::min(a.cos_emission, b.cos_emission);
+  const bool turned = both.two_sided && dot(Vec3d(a.axis), Vec3d(b.axis)) < 0;
+  if (is_surely_within(b, turned, a)) {
+    both.axis = a.axis;
+    both.cos_spread = cosine_kept(a.cos_spread);
+    return both;
+  }
+  if (is_surely_within(a, turned, b)) {
+    both.axis = turned ? -b.axis : b.axis;
+    both.cos_spread = cosine_kept(b.cos_spread);
+    return both;
+  }
   const Cone cone_a = cone_of(a);
   Cone cone_b = cone_of(b);
   if (both.two_sided && dot(cone_a.axis, cone_b.axis) < 0) cone_b.axis = -cone_b.axis;

@@ -2,7 +2,9 @@
 #include "scene/lights/light_tree.h"
 
 #include <array>
-#include <numeric>
+#include <optional>
+
+#include "core/base/parallel.h"
 
 namespace vernier {
 namespace {
@@ -37,6 +39,76 @@ float cost(const LightBounds& group, const Bounds& parent, int axis) {
   return regularity * group.power * orientation_measure(group) * surface_area(group.box);
 }
 
+/// As many lights are worth a task of their own.
+constexpr size_t least_parallel = 4096;
+
+/// Calls body(i) for i in [0, count), at once if there is enough to do.
+template <typename Body>
+void for_each_of_few(bool at_once, size_t count, const Body& body) {
+  if (at_once)
+    parallel_for(count, body);
+  else
+    for (size_t i = 0; i < count; ++i) body(i);
+}
+
+/// Which lights go below a plane across an axis.
+struct Split {
+  std::span<const LightBounds> bounds;
+  int axis = 0, first_above = 0;  ///< bucket
+  float lower = 0, width = 0;     ///< of the centers
+  float cost = std::numeric_limits<float>::infinity();
+
+  int bucket_of(uint32_t light) const {
+    const float place = (bounds[light].box.center()[axis] - lower) / width;
+    return std::clamp(int(place * buckets), 0, buckets - 1);
+  }
+  bool operator()(uint32_t light) const { return bucket_of(light) < first_above; }
+};
+
+/// The cheapest of the splits between buckets along one axis; none has a cost where none divides.
+Split cheapest_split(std::span<const LightBounds> bounds, std::span<const uint32_t> lights, const Bounds& box,
+                     const Bounds& centers, int axis) {
+  Split best{bounds, axis, 0, centers.lower[axis], centers.upper[axis] - centers.lower[axis]};
+  if (!(centers.upper[axis] > centers.lower[axis])) return best;
+  std::array<LightBounds, buckets> groups{};
+  for (const uint32_t i : lights) {
+    LightBounds& group = groups[size_t(best.bucket_of(i))];
+    group = merge(group, bounds[i]);
+  }
+  std::array<LightBounds, buckets> above{};
+  LightBounds running;
+  for (size_t b = buckets - 1; b > 0; --b) above[b] = running = merge(running, groups[b]);
+  LightBounds below;
+  for (int split = 1; split < buckets; ++split) {
+    const LightBounds& next = groups[size_t(split) - 1];
+    // After an empty bucket both sides are what they were; of few lights most buckets are.
+    if (split > 1 && next.power == 0) continue;
+    below = merge(below, next);
+    const float c = cost(below, box, axis) + cost(above[size_t(split)], box, axis);
+    if (!(below.power > 0 && above[size_t(split)].power > 0 && c < best.cost)) continue;
+    best.cost = c;
+    best.first_above = split;
+  }
+  return best;
+}
+
+/// The cheapest split along any axis; none: the centers cannot be told apart.
+std::optional<Split> cheapest_split(std::span<const LightBounds> bounds, std::span<const uint32_t> lights) {
+  Bounds box, centers;
+  for (const uint32_t i : lights) {
+    box.add(bounds[i].box.lower);
+    box.add(bounds[i].box.upper);
+    centers.add(bounds[i].box.center());
+  }
+  std::array<Split, 3> splits;
+  for_each_of_few(lights.size() >= least_parallel, splits.size(), [&](size_t axis) {
+    splits[axis] = cheapest_split(bounds, lights, box, centers, int(axis));
+  });
+  const auto best = std::min_element(splits.begin(), splits.end(),
+                                     [](const Split& a, const Split& b) { return a.cost < b.cost; });
+  return best->cost < std::numeric_limits<float>::infinity() ? std::optional(*best) : std::nullopt;
+}
+
 double sum(const Float8& x) {
   return ((double(x[0]) + x[1]) + (double(x[2]) + x[3])) + ((double(x[4]) + x[5]) + (double(x[6]) + x[7]));
 }
@@ -55,78 +127,48 @@ LightTree::LightTree(std::vector<LightBounds> bounds) : places_(bounds.size()) {
   // As parts of the whole, powers of any size have sums and quotients that float can hold.
   for (const uint32_t i : lights)
     bounds[i].power = std::max(float(bounds[i].power / power_), std::numeric_limits<float>::min());
-  std::vector<BinaryNode> binary;
-  binary.reserve(2 * lights.size());
-  build(binary, bounds, lights, 0);
+  std::vector<BinaryNode> binary(2 * lights.size() - 1);
+  build(binary, 0, bounds, lights, 0);
+  bounds = {};
+  // Growing would hold the nodes two or three times, and there are hundreds of bytes a light.
+  nodes_.reserve(count_wide(binary, 0));
   widen(binary, 0, 0, 0);
 }
 
-void LightTree::build(std::vector<BinaryNode>& nodes, std::span<const LightBounds> bounds,
+void LightTree::build(std::span<BinaryNode> nodes, size_t index, std::span<const LightBounds> bounds,
                       std::span<uint32_t> lights, int depth) {
-  const size_t index = nodes.size();
-  nodes.emplace_back();
   if (lights.size() == 1) {
     nodes[index] = {bounds[lights[0]], 0, lights[0]};
     return;
   }
-
-  Bounds box, centers;
-  for (const uint32_t i : lights) {
-    box.add(bounds[i].box.lower);
-    box.add(bounds[i].box.upper);
-    centers.add(bounds[i].box.center());
-  }
-  const auto bucket_of = [&](uint32_t light, int axis) {
-    const float width = centers.upper[axis] - centers.lower[axis];
-    const float place = (bounds[light].box.center()[axis] - centers.lower[axis]) / width;
-    return std::clamp(int(place * buckets), 0, buckets - 1);
-  };
-  float best_cost = std::numeric_limits<float>::infinity();
-  int best_axis = -1, best_split = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!(centers.upper[axis] > centers.lower[axis])) continue;
-    std::array<LightBounds, buckets> groups{};
-    for (const uint32_t i : lights) {
-      LightBounds& group = groups[size_t(bucket_of(i, axis))];
-      group = merge(group, bounds[i]);
-    }
-    std::array<LightBounds, buckets> above{};
-    LightBounds running;
-    for (size_t b = buckets - 1; b > 0; --b) above[b] = running = merge(running, groups[b]);
-    LightBounds below;
-    for (int split = 1; split < buckets; ++split) {
-      below = merge(below, groups[size_t(split) - 1]);
-      const float c = cost(below, box, axis) + cost(above[size_t(split)], box, axis);
-      if (below.power > 0 && above[size_t(split)].power > 0 && c < best_cost) {
-        best_cost = c;
-        best_axis = axis;
-        best_split = split;
-      }
-    }
-  }
+  const auto is_below = cheapest_split(bounds, lights);
   auto middle = lights.begin() + ptrdiff_t(lights.size() / 2);
-  if (best_axis >= 0 && depth < max_split_depth)
-    middle = std::stable_partition(lights.begin(), lights.end(),
-                                   [&](uint32_t i) { return bucket_of(i, best_axis) < best_split; });
+  if (is_below && depth < max_split_depth)
+    middle = std::stable_partition(lights.begin(), lights.end(), *is_below);
+  // A tree over n lights has 2 n - 1 nodes: it is known where the right one begins before the left is built.
   const auto count = size_t(middle - lights.begin());
-  build(nodes, bounds, lights.first(count), depth + 1);
-  const auto right = uint32_t(nodes.size());
-  build(nodes, bounds, lights.subspan(count), depth + 1);
-  nodes[index] = {merge(nodes[index + 1].bounds, nodes[right].bounds), right, 0};
+  const size_t left = index + 1, right = index + 2 * count;
+  const auto build_side = [&](size_t side) {
+    if (side == 0)
+      build(nodes, left, bounds, lights.first(count), depth + 1);
+    else
+      build(nodes, right, bounds, lights.subspan(count), depth + 1);
+  };
+  for_each_of_few(lights.size() >= least_parallel, 2, build_side);
+  const LightBounds both = merge(nodes[left].bounds, nodes[right].bounds);
+  nodes[index] = {both, uint32_t(right), 0, both.power * orientation_measure(both) * both.box.half_area()};
 }
 
-uint32_t LightTree::widen(const std::vector<BinaryNode>& binary, uint32_t root, uint32_t parent,
-                          uint32_t slot) {
-  // Opens the group about which least is known until there are eight.
+/// The nodes that one wide node stands for: opens the group about which least is known until there are eight.
+std::vector<uint32_t> LightTree::members(std::span<const BinaryNode> binary, uint32_t root) {
   std::vector<uint32_t> members{root};
   while (members.size() < LightNode::width) {
     auto widest = members.end();
     float most = -1;
     for (auto member = members.begin(); member != members.end(); ++member) {
-      const LightBounds& b = binary[*member].bounds;
-      const float unknown = b.power * orientation_measure(b) * b.box.half_area();
-      if (binary[*member].right != 0 && unknown > most) {
-        most = unknown;
+      const BinaryNode& node = binary[*member];
+      if (node.right != 0 && node.unknown > most) {
+        most = node.unknown;
         widest = member;
       }
     }
@@ -135,7 +177,18 @@ uint32_t LightTree::widen(const std::vector<BinaryNode>& binary, uint32_t root, 
     *widest = opened + 1;
     members.push_back(binary[opened].right);
   }
+  return members;
+}
 
+size_t LightTree::count_wide(std::span<const BinaryNode> binary, uint32_t root) {
+  size_t count = 1;
+  for (const uint32_t member : members(binary, root))
+    if (binary[member].right != 0) count += count_wide(binary, member);
+  return count;
+}
+
+uint32_t LightTree::widen(std::span<const BinaryNode> binary, uint32_t root, uint32_t parent, uint32_t slot) {
+  const std::vector<uint32_t> members = LightTree::members(binary, root);
   const auto index = uint32_t(nodes_.size());
   nodes_.emplace_back();
   nodes_[index].parent = parent;

@@ -47,15 +47,19 @@ class LightTree {
     LightBounds bounds;
     uint32_t right = 0;  ///< the left child follows its parent; 0: leaf
     uint32_t light = 0;
+    float unknown = 0;  ///< how little is known of what the group sends where
   };
   struct Place {
     uint32_t node = 0, slot = LightNode::width;  ///< no slot: never picked
   };
 
   static Weights weigh(const LightNode& node, const LightReceiver& receiver);
-  static void build(std::vector<BinaryNode>& nodes, std::span<const LightBounds> bounds,
+  /// Fills nodes[index] and those below, which follow it, with a tree over `lights`.
+  static void build(std::span<BinaryNode> nodes, size_t index, std::span<const LightBounds> bounds,
                     std::span<uint32_t> lights, int depth);
-  uint32_t widen(const std::vector<BinaryNode>& binary, uint32_t root, uint32_t parent, uint32_t slot);
+  static std::vector<uint32_t> members(std::span<const BinaryNode> binary, uint32_t root);
+  static size_t count_wide(std::span<const BinaryNode> binary, uint32_t root);
+  uint32_t widen(std::span<const BinaryNode> binary, uint32_t root, uint32_t parent, uint32_t slot);
 
   std::vector<LightNode> nodes_;
   std::vector<Place> places_;  ///< by light

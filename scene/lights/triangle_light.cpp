@@ -59,7 +59,7 @@ class TriangleLight::View {
     if (is_dark() || cosine == 0) return 0;
     if (first_) return 1 / solid_angle_;
     const float by_area = distance2 / (cosine * shape().area);
-    return light_.texture_.empty() ? by_area : by_area * light_.texture_.pdf(invert_sample_triangle(place));
+    return !light_.texture_ ? by_area : by_area * light_.texture_->pdf(invert_sample_triangle(place));
   }
 
  private:
@@ -91,7 +91,7 @@ TriangleLight::Shape TriangleLight::shape_at(float time) const {
   const SurfacePoint first = geometry_->surface_point(instance_, primitive_, {0, 0}, time);
   shape.normal = first.ng;
   shape.near2 =
-      texture_.empty() ? std::max({length_squared(b - a), length_squared(c - b), length_squared(a - c)}) : 0;
+      texture_ ? 0 : std::max({length_squared(b - a), length_squared(c - b), length_squared(a - c)});
   // The bound is linear in the barycentrics, so it is largest at a corner.
   shape.error = max(first.error, max(geometry_->surface_point(instance_, primitive_, {1, 0}, time).error,
                                      geometry_->surface_point(instance_, primitive_, {0, 1}, time).error));
@@ -134,9 +134,9 @@ Vec3f TriangleLight::Shape::at(const Vec2f& place) const {
 Vec2f TriangleLight::place_by_area(const Shape& shape, const Vec2f& u, float& pdf) const {
   pdf = 1 / shape.area;
   if (shape.opposite) return u;
-  if (texture_.empty()) return sample_triangle(u);
+  if (!texture_) return sample_triangle(u);
   float of_texture = 1;
-  const Vec2f place = sample_triangle(texture_.sample(u, of_texture));
+  const Vec2f place = sample_triangle(texture_->sample(u, of_texture));
   pdf *= of_texture;
   return place;
 }
@@ -284,7 +284,7 @@ void TriangleLight::measure_emission() {
   if (!(squares / double(values.size()) > 1.1 * mean * mean)) return;
   // What the readings missed is found by this part of the samples.
   for (float& value : values) value += 0.1f * float(mean);
-  texture_ = Distribution2D(values, cells, cells);
+  texture_ = std::make_unique<const Distribution2D>(values, cells, cells);
   shape_.near2 = 0;
 }
 

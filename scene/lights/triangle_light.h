@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+
 #include "core/sampling/distribution.h"
 #include "scene/geometry.h"
 #include "scene/lights/light.h"
@@ -59,9 +61,10 @@ class TriangleLight : public Light {
   const Material* material_;
   uint32_t instance_, primitive_;
   std::optional<EvenEmission> even_;
-  Distribution2D texture_;  ///< of emission over the square that sample_triangle() maps; empty: even
-  Shape shape_;             ///< in the middle of the shutter
-  size_t moments_ = 0;      ///< at so many it is known where the triangle is; 0: it stands still
+  /// Of emission over the square that sample_triangle() maps; null: even.
+  std::unique_ptr<const Distribution2D> texture_;
+  Shape shape_;         ///< in the middle of the shutter
+  size_t moments_ = 0;  ///< at so many it is known where the triangle is; 0: it stands still
   uint32_t opposite_primitive_ = 0;
   float power_ = 0;
 };

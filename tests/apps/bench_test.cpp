@@ -58,6 +58,27 @@ TEST(BenchStability, WritesTheTableAsJsonAndMarkdown) {
   EXPECT_THAT(test::read_file(table), HasSubstr("| case | figure | rays | bvh | embree-fast |"));
 }
 
+TEST(BenchScale, TellsWhatBuildingAndRenderingCostAsScenesGrow) {
+  test::TemporaryFolder folder;
+  const std::string file = folder.file("s.json");
+  const auto result = test::run_vernier(
+      {"bench", "scale", "--axis", "instances,lights,depth", "--largest", "100", "--json", file});
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("ns a sample"));
+  const auto report = json::parse(test::read_file(file));
+  ASSERT_EQ(report["axes"].size(), 3u);
+  EXPECT_EQ(report["axes"][0]["name"], "instances");
+  EXPECT_EQ(report["axes"][0]["points"].size(), 2u);
+  for (const auto& axis : report["axes"])
+    for (const auto& point : axis["points"]) {
+      EXPECT_GT(point["build"]["processor_seconds"], 0);
+      EXPECT_GE(point["samples"], 256 * 144 * 16);
+      EXPECT_GT(point["nanoseconds_per_sample"], 10);
+    }
+  EXPECT_EQ(test::run_vernier({"bench", "scale", "--axis", "light"}).exit_code, usage);
+  EXPECT_EQ(test::run_vernier({"bench", "scale", "--largest", "0"}).exit_code, usage);
+}
+
 TEST(BenchCalibration, ComparesReportedErrorsWithThoseAgainstAReference) {
   test::TemporaryFolder folder;
   const std::string reference = folder.file("reference.exr"), file = folder.file("c.json");

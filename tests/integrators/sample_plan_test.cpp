@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <numeric>
 #include <optional>
 #include <set>
+
+#include "core/base/parallel.h"
 
 namespace vernier::test {
 namespace {
@@ -44,6 +47,28 @@ TEST(SamplePlan, HoldsAsManySamplesAsItSays) {
       EXPECT_EQ(plan.size(), size);
       EXPECT_NEAR(samples_per_pixel(plan), size, 0.002 * size) << noisy << " pixels, " << size;
     }
+}
+
+// Counted in blocks of pixels, of which a row of this picture is none.
+TEST(SamplePlan, OfALargePictureHoldsWhatItSaysForAnyNumberOfThreads) {
+  constexpr int width = 301, height = 199;
+  SamplesDrawn drawn{{8, 8}, std::vector<uint32_t>(size_t(width) * height * Film::halves, 3)};
+  std::array<SampleGuide, Film::halves> guides{SampleGuide(width, height), SampleGuide(width, height)};
+  for (int i = 0; i < width * height * 16; ++i) {
+    const int pixel = i / 16;
+    const float value =
+        float((int64_t(pixel) * 7919 + int64_t(i) * 104729) % 1009) / 1009 * float(pixel % width) / width;
+    guides[size_t(i % 2)].add(pixel % width, pixel / width, {value, value, 0.5f * value});
+  }
+  const auto counts = [&](unsigned threads) {
+    const ThreadLimit limit(threads);
+    return SamplePlan::adaptive(drawn, guides, 16).numbers().counts;
+  };
+  const std::vector<uint16_t> expected = counts(1);
+  const double sum = std::accumulate(expected.begin(), expected.end(), 0.0);
+  EXPECT_NEAR(sum / (width * height), 16, 0.001 * 16);
+  EXPECT_EQ(counts(2), expected);
+  EXPECT_EQ(counts(7), expected);
 }
 
 // A pixel gets at most eight times its even share, but where few need samples more, up to 64 times; what

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/parallel.h"
 #include "core/sampling/warp.h"
 #include "tests/support/effort.h"
 #include "tests/support/random.h"
@@ -151,6 +152,47 @@ TEST(LightTree, GivesAVeryFaintLightItsProbability) {
     ASSERT_EQ(pick(u), 0u);
     EXPECT_NEAR(measured_probability(u, prob, pick), prob, 1e-4 * prob);
   }
+}
+
+TEST(LightBounds, AWideConeTakesInNarrowOnesAsItIs) {
+  const Vec3f axis = normalize(Vec3f(0.3f, 0.8f, 0.52f)), aside = normalize(cross(axis, {1, 0, 0}));
+  const LightBounds wide = cone(axis, 0.5f);
+  const LightBounds within = cone(normalize(axis + aside * 0.2f), 0.1f), across = cone(aside, 0.1f);
+  EXPECT_EQ(merge(wide, within).axis, axis);
+  EXPECT_EQ(merge(within, wide).axis, axis);
+  EXPECT_NEAR(merge(wide, within).cos_spread, wide.cos_spread, 1e-6);
+  EXPECT_NE(merge(wide, across).axis, axis);
+}
+
+TEST(LightTree, OfManyLightsIsTheSameForAnyNumberOfThreads) {
+  // More than are worth a task of their own.
+  Random random(9);
+  std::vector<LightBounds> lights;
+  for (int i = 0; i < 30'000; ++i) {
+    LightBounds& light = lights.emplace_back(cone(random_direction(random), 0));
+    light.box = {};
+    light.box.add(10 * random.next1() * random_direction(random));
+    light.power = random.next1();
+  }
+  const auto picks = [&](unsigned threads) {
+    const ThreadLimit limit(threads);
+    const LightTree tree(lights);
+    Random choices(11);
+    std::vector<std::pair<uint32_t, double>> list;
+    for (int i = 0; i < 2000; ++i) {
+      const LightReceiver receiver{20 * choices.next1() * random_direction(choices),
+                                   random_direction(choices)};
+      const auto [light, prob] = tree.sample(receiver, choices.next1());
+      list.emplace_back(light, prob);
+      if (prob > 0) {
+        EXPECT_NEAR(tree.prob(receiver, light), prob, 1e-9 * prob);
+      }
+    }
+    return list;
+  };
+  const auto expected = picks(1);
+  EXPECT_EQ(picks(2), expected);
+  EXPECT_EQ(picks(7), expected);
 }
 
 }  // namespace

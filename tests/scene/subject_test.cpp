@@ -105,5 +105,32 @@ TEST(Subject, BodiesAreNotFlat) {
   EXPECT_FALSE(Subject(sphere_scene.geometry()).flat_normal({0, 0, 1}));
 }
 
+TEST(Subject, CopiesOfAMeshAreAsFlatAsMeshesOfTheirOwn) {
+  // Tiles of a mosaic that hangs on a slope: turned, mirrored and of several sizes, which is a similarity,
+  // and one that is stretched, which is not.
+  const Vec3f normal = normalize(Vec3f(0.3f, 0.2f, 1)), right = normalize(cross({0, 1, 0}, normal)),
+              up = cross(normal, right);
+  const auto tile = [&](float size, float stretch, float mirror, const Vec3f& place) {
+    return Transform{right * size * stretch * mirror, up * size, normal * size, place};
+  };
+  const std::vector<Transform> tiles{tile(1, 1, 1, {0, 0, 0}), tile(2, 1, -1, right * 3.f),
+                                     tile(0.5f, 1, 1, up * 2.f), tile(1, 1.5f, 1, up * -3.f)};
+  const MeshDescription relief = box({-0.5f, -0.5f, 0}, {0.5f, 0.5f, 0.05f});
+  SceneBuilder apart;
+  SceneDescription shared;
+  shared.meshes = {relief};
+  shared.materials = {diffuse(0.5f)};
+  for (const Transform& to_world : tiles) {
+    apart.add(relief, diffuse(0.5f), to_world);
+    shared.instances.emplace_back().to_world = to_world;
+  }
+  const Scene of_copies(std::move(shared), {}), of_meshes = apart.build();
+  const auto found = Subject(of_copies.geometry()).flat_normal({0, 0, 1});
+  const auto expected = Subject(of_meshes.geometry()).flat_normal({0, 0, 1});
+  ASSERT_TRUE(found && expected);
+  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR((*found)[axis], (*expected)[axis], 1e-5);
+  EXPECT_NEAR(dot(*found, normal), 1, 1e-4);
+}
+
 }  // namespace
 }  // namespace vernier::test
