@@ -178,7 +178,7 @@ TEST(Manifold, LampInAMirror) {
 struct Body {
   const char* name;
   Vec3f lamp, center;
-  std::vector<std::pair<float, float>> spheres;  ///< radius and index, 0: mirror
+  std::vector<std::pair<float, float>> spheres;  ///< radius and index
   int rings;                                     ///< few: facets, many: smooth
   Vec3f looks_at;
   double within;
@@ -188,14 +188,13 @@ const Body bodies[] = {
     {"lens", {0, 2.5f, 0}, {0, 0.52f, 0}, {{0.5f, 1.2f}}, 48, {0.05f, 0, 0}, 0.05, 8192},
     {"facets", {0, 2.5f, 0}, {0, 0.9f, 0}, {{0.5f, 1.5f}}, 3, {0, 0, 0}, 0.09, 8192},
     {"bulb", {0, 1.5f, 0}, {0, 1.5f, 0}, {{0.5f, 1.5f}, {0.45f, 1.f}}, 48, {0, 0, 0.1f}, 0.05, 8192},
-    {"mirror ball", {1.5f, 1.2f, 0.3f}, {-0.8f, 0.6f, 0}, {{0.5f, 0.f}}, 48, {0, 0, 0.1f}, 0.08, 4096},
 };
 
 Scene scene_of(const Body& body) {
   SceneBuilder builder;
   builder.add(floor_mesh(), diffuse(0.01f));
   for (const auto& [radius, index] : body.spheres) {
-    MaterialDescription material = index > 0 ? glass(0) : metal(0);
+    MaterialDescription material = glass(0);
     material.ior = index;
     const bool is_smooth = body.rings > 8;
     builder.add(is_smooth ? smooth_sphere(body.center, radius, body.rings, 2 * body.rings)
