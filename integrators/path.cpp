@@ -49,10 +49,9 @@ class PathIntegrator : public Integrator {
         break;
       }
       const bool in_medium = hit && hit->is_in_medium();
-      if (!in_medium)
-        if (vertex > 1 || !hit || !is_brought(context, *hit))
-          add(out, depth, throughput * met_emission(scene, last, segment.ray, hit),
-              {context, route, source_of(hit)});
+      if (!in_medium && !(vertex == 1 && is_brought(context, hit)))
+        add(out, depth, throughput * met_emission(scene, last, segment.ray, hit),
+            {context, route, source_of(hit)});
       if (!hit) break;
 
       sampler.start_block(uint32_t(vertex));
@@ -172,8 +171,8 @@ class PathIntegrator : public Integrator {
   }
 
   /// Whether light paths bring what the camera sees of a surface's own light.
-  static bool is_brought(const SampleContext& context, const SurfacePoint& hit) {
-    return context.small_lamps && context.small_lamps->contains(hit);
+  static bool is_brought(const SampleContext& context, const std::optional<Interaction>& hit) {
+    return context.small_lamps && hit && context.small_lamps->contains(*hit);
   }
 
   /// Emission met by a ray, weighted against next-event estimation: area lights and environment alike.

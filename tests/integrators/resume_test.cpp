@@ -248,7 +248,7 @@ TEST_F(CheckpointFile, DamageIsFound) {
               HasSubstr("is not a checkpoint"));
   std::string newer = bytes;
   newer[8] = 9;
-  EXPECT_THAT(complaint(newer), HasSubstr("format 9; this version reads format 5"));
+  EXPECT_THAT(complaint(newer), HasSubstr("format 9; this version reads format 6"));
 }
 
 TEST_F(CheckpointFile, CannotBeReadOrWritten) {
