@@ -62,7 +62,8 @@ SceneDescription scene_of_instances(size_t instances) {
   const auto side = size_t(std::ceil(std::sqrt(double(instances))));
   for (size_t i = 0; i < instances; ++i) {
     InstanceDescription& instance = scene.instances.emplace_back();
-    instance.to_world = turned(3 * noise(i), {12 * float(i % side), 0, 12 * float(i / side)});
+    const size_t column = i % side, row = i / side;
+    instance.to_world = turned(3 * noise(i), {12 * float(column), 0, 12 * float(row)});
   }
   return scene;
 }
