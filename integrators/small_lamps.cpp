@@ -16,7 +16,7 @@ constexpr float largest = 1;
 constexpr float dimmest = 0.1f;
 /// Part of the pixels around that may glow.
 constexpr float crowded = 0.5f;
-/// With twice as many the picture of 1,024 lamps had 2 % less variance for 3 % more time.
+/// With twice as many the picture of 1,024 lamps had 3 % less variance for 2 % more time.
 constexpr uint64_t paths_per_lamp = 4;
 /// Pixels for which there may be one lamp, so that light paths take a small part of the time.
 constexpr size_t pixels_per_lamp = 32;

@@ -41,10 +41,17 @@ def relative_variances(pictures):
     return {"all": by_pixel.mean(), "trim": kept.mean(), "block": blocks.mean() * BLOCK**2}
 
 
+class TooShort(Exception):
+    """Runs end before they take time that can be told."""
+
+
 def rendering_seconds(few, seconds_of_few, many, seconds_of_many):
     """Time that `many` samples a pixel take, from the times of whole runs of both numbers: what does not depend on the number,
-    starting, loading and building, drops out. Medians."""
-    return (numpy.median(seconds_of_many) - numpy.median(seconds_of_few)) * many / (many - few)
+    starting, loading and building, drops out. Medians. Throws TooShort where chance hides it."""
+    more = numpy.median(seconds_of_many) - numpy.median(seconds_of_few)
+    if not more > 0:
+        raise TooShort(f"{many} samples a pixel took no longer than {few}; expected a larger --size or --spp")
+    return more * many / (many - few)
 
 
 def mean_luminance(pictures):

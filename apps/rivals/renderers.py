@@ -11,8 +11,7 @@ import subprocess
 import time
 
 import numpy
-
-import openexr
+import OpenImageIO
 
 HERE = pathlib.Path(__file__).resolve().parent
 
@@ -57,7 +56,7 @@ class Renderer:
         text, seconds, usage, code = _timed(command, pathlib.Path(folder) / "output.txt")
         if code or not picture.exists():
             raise Failed(f"{shlex.join(command)}\nended with {code}:\n{text[-2000:]}")
-        values = numpy.load(picture) if self._script else openexr.read_rgb(picture)
+        values = numpy.load(picture) if self._script else read_rgb(picture)
         told = re.search(r"^RIVAL (.*)$", text, re.M)
         version = told.group(1) if told else _version_of(self._program)
         return Run(values, seconds, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024, version,
@@ -65,7 +64,7 @@ class Renderer:
 
     def _command(self, job, folder, picture):
         if not self._script:
-            command = [*self._program, "render", job.scene, "-o", str(picture), "--compression", "none",
+            command = [*self._program, "render", job.scene, "-o", str(picture),
                        "--resolution", f"{job.width}x{job.height}", "--spp", str(job.spp), "--seed", str(job.seed),
                        "--threads", str(job.threads), "--max-depth", str(job.depth), "--filter", "box", "--quiet"]
             return [*command, "--env", job.environment or "none"]
@@ -73,6 +72,11 @@ class Renderer:
         file = pathlib.Path(folder) / "job.json"
         file.write_text(json.dumps(description, indent=1), encoding="utf-8")
         return [*self._program, str(HERE / self._script), *(["--"] if "-P" in self._program else []), str(file)]
+
+
+def read_rgb(path):
+    """The first three channels of a picture, as an array of height x width x 3."""
+    return OpenImageIO.ImageBuf(str(path)).get_pixels(OpenImageIO.FLOAT)[:, :, :3]
 
 
 def _timed(command, output):

@@ -30,7 +30,7 @@ std::string missing_text(const MissingEstimate& missing) {
 void warn_of_missing_light(const RenderResult& result, int max_depth, NoticeLog& log) {
   const MissingEstimate& missing = result.missing;
   if (missing.bent.share >= least_missing_share) {
-    const bool has_caustics = result.film.has_splats();
+    const bool has_caustics = result.light_path_kind == LightPathKind::caustics;
     log.add(
         {Notice::Severity::warning,
          {},

@@ -16,7 +16,7 @@ struct MemoryUse {
   bool denoise = false;
   bool display = false;  ///< whether a .png or .jpg is written
   bool report = false;
-  bool splats = false;  ///< whether light paths may bring light, of which the scene decides
+  bool splats = false;  ///< whether light paths may bring light, of which scene and camera decide
   bool half = false;    ///< whether an .exr has 16-bit values, which are limited in a copy
 };
 

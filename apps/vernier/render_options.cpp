@@ -162,7 +162,7 @@ MemoryUse memory_use(const RenderRequest& request) {
   use.display = has_display_output(flags);
   use.report = !flags.report.empty();
   use.half = flags.exr.half;
-  use.splats = flags.integrator == "light" || (flags.integrator == "path" && flags.caustics != "off");
+  use.splats = flags.integrator == "light" || flags.integrator == "path";
   return use;
 }
 

@@ -37,6 +37,16 @@ void warn_of_bad_light_paths(const RenderResult& result, NoticeLog& log) {
                        result.bad_light_paths)});
 }
 
+/// What was added without being asked for, since it takes time of its own.
+void note_caustics(const RenderResult& result, const RenderFlags& flags, NoticeLog& log) {
+  if (result.light_path_kind != LightPathKind::caustics || flags.caustics != "auto") return;
+  log.add(
+      {Notice::Severity::info,
+       {},
+       "lamps shine on mirrors or glass that bends their light: what these cast (caustics) comes by paths "
+       "that begin at the lamps; --caustics off leaves it out, and takes less time"});
+}
+
 /// Says so when what the camera sees of the scene comes out all but black, and what helps.
 void warn_if_black(double mean, const RenderFlags& flags, const RenderReport& report, NoticeLog& log) {
   constexpr double black = 0.005, grey = 0.18;
@@ -58,6 +68,7 @@ void warn_of_result(const RenderResult& result, const Scene& scene, const Render
                     const RenderReport& report, NoticeLog& log) {
   warn_of_bad_samples(result, flags, log);
   warn_of_bad_light_paths(result, log);
+  note_caustics(result, flags, log);
   warn_of_missing_light(result, flags.integrator_options.max_depth, log);
   if (!shows_light(flags)) return;
   const RenderSettings& settings = report.settings;

@@ -48,7 +48,9 @@ class Renderer {
         hooks_(std::move(hooks)),
         state_(state),
         seconds_before_(state_.so_far.seconds) {
-    if (job.light_paths) light_pass_.emplace(*job.light_paths, sorter_);
+    if (!job.light_paths) return;
+    light_pass_.emplace(*job.light_paths, sorter_);
+    result().light_path_kind = job.light_paths->kind();
   }
 
   void run() {

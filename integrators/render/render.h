@@ -54,10 +54,11 @@ struct RenderResult {
   double seconds = 0;
   uint64_t samples = 0;
   RayCounts rays;
-  MissingEstimate missing;                     ///< known bias, which `error` does not contain
-  uint64_t bad_samples = 0;                    ///< rejected by the film
-  uint64_t bad_light_paths = 0;                ///< of which nothing was kept, for the same reasons
-  std::vector<BadSample> bad_sample_examples;  ///< the first few by column, row, half and index
+  MissingEstimate missing;                              ///< known bias, which `error` does not contain
+  uint64_t bad_samples = 0;                             ///< rejected by the film
+  LightPathKind light_path_kind = LightPathKind::none;  ///< followed beside camera samples
+  uint64_t bad_light_paths = 0;                         ///< of which nothing was kept, for the same reasons
+  std::vector<BadSample> bad_sample_examples;           ///< the first few by column, row, half and index
 };
 
 /// Who is told of a render on its way.

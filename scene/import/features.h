@@ -21,7 +21,7 @@ std::vector<FeatureUse> known_extensions();
 /// How each extension that the file uses, and each core feature worth a word, is honoured.
 std::vector<FeatureUse> report_features(const tinygltf::Model& model);
 
-/// Lamps are approximated beside volumes that bend light.
+/// Lamps are approximated beside volumes that bend light in a way that is found in part.
 void note_bent_light(SceneDescription& scene);
 
 /// "NAME is ignored: NOTE"

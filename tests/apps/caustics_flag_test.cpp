@@ -20,17 +20,14 @@ using testing::Not;
 class CausticsFlag : public testing::Test {
  protected:
   /// A lamp in a ball of glass above a floor.
-  CausticsFlag() {
-    PunctualLightDescription lamp;
-    lamp.name = "lamp";
-    lamp.intensity = 20;
-    lamp.to_world.origin = {0, 1.5f, 0};
-    scene_ = folder_.write("bulb.gltf",
-                           to_gltf(SceneBuilder()
-                                       .add(parallelogram({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}), diffuse(0.5f))
-                                       .add(sphere({0, 1.5f, 0}, 0.4f, 16, 32), glass(0))
-                                       .add(lamp)
-                                       .description()));
+  CausticsFlag() : scene_(bulb_of("bulb.gltf", glass(0))) {}
+  std::string bulb_of(const std::string& name, const MaterialDescription& material) const {
+    return folder_.write(name,
+                         to_gltf(SceneBuilder()
+                                     .add(parallelogram({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}), diffuse(0.5f))
+                                     .add(sphere({0, 1.5f, 0}, 0.4f, 16, 32), material)
+                                     .add(point_lamp({0, 1.5f, 0}, 20))
+                                     .description()));
   }
   ProcessResult render(const std::string& output, std::vector<std::string> more, const char* spp = "16") {
     const std::vector<std::string> all{"render",      scene_,    "-o",      folder_.file(output),
@@ -51,13 +48,39 @@ TEST_F(CausticsFlag, BringWhatIsMissingWithout) {
   const ProcessResult off = render("off.exr", {"--caustics", "off"});
   EXPECT_EQ(off.exit_code, 0) << off.err;
   EXPECT_THAT(off.err, HasSubstr("--caustics auto brings it"));
+  EXPECT_THAT(off.err, Not(HasSubstr("--caustics off")));
   EXPECT_EQ(stats()["picture"]["light_paths"], 0);
   EXPECT_GT(stats()["missing"]["bent"]["share"], 0.9);
   const ProcessResult found = render("auto.exr", {});
   EXPECT_EQ(found.exit_code, 0) << found.err;
   EXPECT_THAT(found.err, Not(HasSubstr("missing")));
+  EXPECT_THAT(found.err, HasSubstr("--caustics off leaves it out"));
   EXPECT_GE(stats()["picture"]["light_paths"], 32 * 24 * 16);
   EXPECT_LT(stats()["missing"]["bent"]["share"], 0.01);
+}
+
+// What is brought whole makes a scene exact; what is brought in part does not.
+TEST_F(CausticsFlag, StrictTakesWhatIsBrought) {
+  EXPECT_EQ(render("a.exr", {"--strict"}).exit_code, 0);
+  scene_ = bulb_of("etched.gltf", glass(0.05f));
+  const ProcessResult refused = render("b.exr", {"--strict"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("KHR_lights_punctual is approximated"));
+}
+
+// A lamp that light paths bring for being small is no caustic: what is missing is told as without it.
+TEST_F(CausticsFlag, AreNotWhatSmallLampsTake) {
+  scene_ = folder_.write(
+      "both.gltf",
+      to_gltf(SceneBuilder()
+                  .add(parallelogram({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}), diffuse(0.5f))
+                  .add(sphere({0, 1.5f, 0}, 0.4f, 16, 32), glass(0))
+                  .add(point_lamp({0, 1.5f, 0}, 20))
+                  .add(parallelogram({0.3f, 0.5f, 0}, {0.002f, 0, 0}, {0, 0.002f, 0}), emitter(100))
+                  .description()));
+  const ProcessResult off = render("off.exr", {"--caustics", "off"});
+  EXPECT_GT(stats()["picture"]["light_paths"], 0);
+  EXPECT_THAT(off.err, HasSubstr("--caustics auto brings it"));
 }
 
 TEST_F(CausticsFlag, AreTheSameFromACheckpoint) {

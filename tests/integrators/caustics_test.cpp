@@ -16,21 +16,6 @@ MaterialDescription grey(MaterialDescription material, float reflectance) {
 
 MeshDescription floor_mesh() { return parallelogram({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}); }
 
-PunctualLightDescription point(const Vec3f& at, float intensity) {
-  PunctualLightDescription light;
-  light.intensity = intensity;
-  light.to_world.origin = at;
-  return light;
-}
-
-PunctualLightDescription sun(const Vec3f& shines, float irradiance) {
-  PunctualLightDescription light;
-  light.kind = PunctualLightDescription::Kind::directional;
-  light.intensity = irradiance;
-  light.to_world.z = -normalize(shines);
-  return light;
-}
-
 /// A small round lamp of about that intensity all around.
 void add_small_lamp(SceneBuilder& scene, const Vec3f& at, float radius, float intensity) {
   const MeshDescription mesh = sphere(at, radius, 8, 16);
@@ -107,7 +92,7 @@ TEST(Caustics, LampBesideAMirror) {
   const Scene scene = SceneBuilder()
                           .add(floor_mesh(), diffuse(0.01f))
                           .add(parallelogram({1, 0, -4}, {0, 0, 8}, {0, 4, 0}), metal(0))
-                          .add(point({0, 1, 0.5f}, 10))
+                          .add(point_lamp({0, 1, 0.5f}, 10))
                           .build();
   const CameraDescription view = camera_at({0, 2, 2}, {0, 0, 0}, 0.3f);
   const Camera camera(view, 8, 8);
@@ -161,7 +146,7 @@ TEST(Caustics, AsOfASmallLamp) {
     add_small_lamp(large, body.lamp, 0.15f, 10);
     add_small_lamp(small, body.lamp, 0.02f, 10);
     const Scene large_lamp = large.build(), small_lamp = small.build();
-    const Scene lamp = none.add(point(body.lamp, 10)).build();
+    const Scene lamp = none.add(point_lamp(body.lamp, 10)).build();
     EXPECT_TRUE(confirmed(significance, 1, [&](uint64_t seed, uint64_t factor) {
       const int spp = 192 * int(factor);
       return difference(
@@ -190,7 +175,7 @@ Scene mixed_scene() {
   dispersing.dispersion = 10;
   dispersing.attenuation_color = {0.5f, 0.7f, 0.9f};
   dispersing.attenuation_distance = 0.5f;
-  PunctualLightDescription near = point({-0.5f, 1.2f, -0.5f}, 6);
+  PunctualLightDescription near = point_lamp({-0.5f, 1.2f, -0.5f}, 6);
   near.range = 2.5f;
   MeshDescription smooth = sphere({-0.9f, 0.6f, 0.3f}, 0.3f, 6, 8);
   for (const Vec3f& at : smooth.positions) smooth.normals.push_back(normalize(at - Vec3f(-0.9f, 0.6f, 0.3f)));
@@ -236,7 +221,7 @@ MissingEstimate missing(const Scene& scene, const CameraDescription& view, Caust
 // What light paths bring is missing no more, nor what mirrors show of it, but for what a normal texture
 // bends.
 TEST(Caustics, LedgerTellsWhatRemains) {
-  SceneBuilder bulb = scene_of(bodies[1]).add(point(bodies[1].lamp, 10));
+  SceneBuilder bulb = scene_of(bodies[1]).add(point_lamp(bodies[1].lamp, 10));
   const Scene scene = bulb.build();
   EXPECT_GT(missing(scene, under_the_body, Caustics::off).bent.share, 0.9);
   EXPECT_LT(missing(scene, under_the_body, Caustics::automatic).bent.share, 0.02);
@@ -249,7 +234,7 @@ TEST(Caustics, LedgerTellsWhatRemains) {
   rippled.normal_texture.texture = 0;
   const Scene mapped = bulb.texture(1, 1, {128})
                            .add(box({-3, 2.2f, -3}, {3, 2.3f, 3}), rippled)
-                           .add(point({0, 2.5f, 0}, 100))
+                           .add(point_lamp({0, 2.5f, 0}, 100))
                            .build();
   EXPECT_GT(missing(mapped, under_the_body, Caustics::on).bent.share, 0.1);
 }
@@ -263,17 +248,18 @@ TEST(Caustics, AutomaticallyWhereThereAreSome) {
   };
   SceneBuilder plain;
   plain.add(floor_mesh(), plastic(0.5f));
-  EXPECT_EQ(kind(SceneBuilder(plain).add(point({0, 1, 0}, 1))), LightPathKind::none);
+  EXPECT_EQ(kind(SceneBuilder(plain).add(point_lamp({0, 1, 0}, 1))), LightPathKind::none);
   EXPECT_EQ(kind(SceneBuilder(plain).add(sphere({0, 1, 0}, 0.5f, 8, 8), glass(0))), LightPathKind::none);
   SceneBuilder lit =
-      SceneBuilder(plain).add(sphere({0, 1, 0}, 0.5f, 8, 8), glass(0)).add(point({0, 2, 0}, 1));
+      SceneBuilder(plain).add(sphere({0, 1, 0}, 0.5f, 8, 8), glass(0)).add(point_lamp({0, 2, 0}, 1));
   EXPECT_EQ(kind(lit), LightPathKind::caustics);
   EXPECT_EQ(kind(lit, "path", Caustics::off), LightPathKind::none);
   EXPECT_EQ(kind(lit, "whitted"), LightPathKind::none);
   EXPECT_EQ(kind(lit, "light"), LightPathKind::all);
   // Glass in the shadow of a floor is none of a lamp's.
-  EXPECT_EQ(kind(SceneBuilder(plain).add(sphere({0, 1, 0}, 0.5f, 8, 8), glass(0)).add(point({0, -1, 0}, 1))),
-            LightPathKind::none);
+  EXPECT_EQ(
+      kind(SceneBuilder(plain).add(sphere({0, 1, 0}, 0.5f, 8, 8), glass(0)).add(point_lamp({0, -1, 0}, 1))),
+      LightPathKind::none);
 }
 
 }  // namespace

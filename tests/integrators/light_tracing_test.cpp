@@ -24,13 +24,6 @@ MaterialDescription grey(MaterialDescription material, float reflectance) {
 
 MeshDescription floor_mesh() { return parallelogram({-3, 0, -3}, {0, 0, 6}, {6, 0, 0}); }
 
-/// A sphere that is shaded as a smooth one.
-MeshDescription smooth_sphere(const Vec3f& center, float radius, int rings, int segments) {
-  MeshDescription mesh = sphere(center, radius, rings, segments);
-  for (const Vec3f& at : mesh.positions) mesh.normals.push_back(normalize(at - center));
-  return mesh;
-}
-
 using Kind = PunctualLightDescription::Kind;
 
 PunctualLightDescription lamp(Kind kind, const Vec3f& at, const Vec3f& shines, float intensity) {

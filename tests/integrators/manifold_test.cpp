@@ -13,21 +13,6 @@
 namespace vernier::test {
 namespace {
 
-PunctualLightDescription point(const Vec3f& at, float intensity) {
-  PunctualLightDescription light;
-  light.intensity = intensity;
-  light.to_world.origin = at;
-  return light;
-}
-
-PunctualLightDescription sun(const Vec3f& shines, float irradiance) {
-  PunctualLightDescription light;
-  light.kind = PunctualLightDescription::Kind::directional;
-  light.intensity = irradiance;
-  light.to_world.z = -normalize(shines);
-  return light;
-}
-
 MaterialDescription water() {
   MaterialDescription material = glass(0);
   material.ior = 1.33f;
@@ -35,13 +20,6 @@ MaterialDescription water() {
 }
 
 MeshDescription floor_mesh(float y = 0) { return parallelogram({-4, y, -4}, {0, 0, 8}, {8, 0, 0}); }
-
-/// Normals as those of a true sphere.
-MeshDescription smooth_sphere(const Vec3f& center, float radius, int rings, int segments) {
-  MeshDescription mesh = sphere(center, radius, rings, segments);
-  for (const Vec3f& at : mesh.positions) mesh.normals.push_back(normalize(at - center));
-  return mesh;
-}
 
 std::shared_ptr<const LightEmission> lamps_of(const Scene& scene) {
   return std::make_shared<LightEmission>(LightEmission::of_lamps(scene));
@@ -140,7 +118,7 @@ SceneBuilder pool(float reflectance) {
 }
 
 TEST(Manifold, LampAboveWaterSeenFromWithin) {
-  const Scene scene = pool(0.002f).add(point({0, 2.1f, 0}, 10)).build();
+  const Scene scene = pool(0.002f).add(point_lamp({0, 2.1f, 0}, 10)).build();
   for (const double offset : {0.3, 1.5}) {
     const CameraDescription view = camera_at({float(offset), 0.6f, 0.5f}, {float(offset), 0.1f, 0}, 1e-3f);
     const double expected = 0.002 / std::numbers::pi * under_water(1, 1, offset, 10, double(1.33f));
@@ -151,7 +129,7 @@ TEST(Manifold, LampAboveWaterSeenFromWithin) {
 // All of it, by paths from the camera above the water. The ground lights itself by what the surface reflects
 // to it, less than its reflectance.
 TEST(Manifold, LampAboveWaterSeenFromAbove) {
-  const Scene scene = pool(0.002f).add(point({0, 2.1f, 0}, 10)).build();
+  const Scene scene = pool(0.002f).add(point_lamp({0, 2.1f, 0}, 10)).build();
   const double n = double(1.33f), angle = 0.6, bent = std::asin(std::sin(angle) / n), offset = 0.8;
   const double surface_x = offset + std::tan(bent), above = 3;
   const Vec3f eye(float(surface_x + above * std::tan(angle)), 1.1f + float(above), 0.f);
@@ -166,7 +144,7 @@ TEST(Manifold, LampInAMirror) {
   const Scene scene = SceneBuilder()
                           .add(floor_mesh(), diffuse(0.5f))
                           .add(parallelogram({1, 0, -4}, {0, 0, 8}, {0, 4, 0}), metal(0))
-                          .add(point({0, 1, 0.5f}, 10))
+                          .add(point_lamp({0, 1, 0.5f}, 10))
                           .build();
   const Vec3f at(0.2f, 0, 0), to_lamp = Vec3f(2, 1, 0.5f) - at;
   const double expected =
@@ -201,7 +179,7 @@ Scene scene_of(const Body& body) {
                           : sphere(body.center, radius, body.rings, 2 * body.rings),
                 material);
   }
-  return builder.add(point(body.lamp, 10)).build();
+  return builder.add(point_lamp(body.lamp, 10)).build();
 }
 
 // What chains alone bring where light paths end too, beside direct light.
@@ -290,7 +268,7 @@ TEST(Manifold, AsOfASmallLamp) {
   };
   SceneBuilder ball = pool_with({});
   add_small_lamp(ball, lamp, 0.25f, 10);
-  const Scene of_ball = ball.build(), of_point = pool_with({}).add(point(lamp, 10)).build();
+  const Scene of_ball = ball.build(), of_point = pool_with({}).add(point_lamp(lamp, 10)).build();
   for (const CameraDescription& view : {camera_at({1.2f, 4, 0}, {1, 0, 0.2f}, 0.15f),
                                         camera_at({0.2f, 2.6f, 0.3f}, {2.3f, 2, 0.3f}, 0.15f)}) {
     const Samples lit = picture_mean(of_point, view, "path", 256),

@@ -10,13 +10,6 @@
 namespace vernier::test {
 namespace {
 
-PunctualLightDescription point(const Vec3f& at, float intensity) {
-  PunctualLightDescription light;
-  light.intensity = intensity;
-  light.to_world.origin = at;
-  return light;
-}
-
 SceneBuilder floor_scene() {
   return SceneBuilder().add(parallelogram({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}), diffuse(0.5f));
 }
@@ -45,7 +38,7 @@ MissingEstimate missing(const Scene& scene, int max_depth, bool adaptive = true,
 }
 
 TEST(MissingLight, NoneWhereNothingIsLeftOut) {
-  const Scene scene = floor_scene().add(point({0, 2, 0}, 10)).build();
+  const Scene scene = floor_scene().add(point_lamp({0, 2, 0}, 10)).build();
   const MissingEstimate none = missing(scene, 16);
   EXPECT_EQ(none.bent.share, 0);
   EXPECT_EQ(none.bent.rel_rmse, 0);
@@ -66,7 +59,7 @@ TEST(MissingLight, LampInABulb) {
                                    air.ior = 1;
                                    return air;
                                  }())
-                            .add(point({0, 2, 0}, 40))
+                            .add(point_lamp({0, 2, 0}, 40))
                             .build();
     const MissingEstimate told = missing(scene, 16, true, integrator);
     EXPECT_GT(told.bent.share, integrator == std::string("path") ? 0.9 : 0.1) << integrator;

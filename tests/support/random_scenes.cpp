@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <set>
 #include <span>
 
@@ -241,10 +242,12 @@ json material_json(const MaterialDescription& m) {
   extensions["KHR_materials_specular"] = {{"specularFactor", m.specular},
                                           {"specularColorFactor", array_of(m.specular_color)}};
   if (m.transmission > 0) extensions["KHR_materials_transmission"]["transmissionFactor"] = m.transmission;
-  if (m.thickness > 0)
-    extensions["KHR_materials_volume"] = {{"thicknessFactor", m.thickness},
-                                          {"attenuationDistance", m.attenuation_distance},
-                                          {"attenuationColor", array_of(m.attenuation_color)}};
+  if (m.thickness > 0) {
+    auto& volume = extensions["KHR_materials_volume"] = {{"thicknessFactor", m.thickness},
+                                                         {"attenuationColor", array_of(m.attenuation_color)}};
+    // Infinity is the default, and no number of JSON.
+    if (std::isfinite(m.attenuation_distance)) volume["attenuationDistance"] = m.attenuation_distance;
+  }
   if (const Rgb& albedo = m.scattering_albedo; !is_black(albedo))
     extensions["KHR_materials_volume_scatter"] = {
         {"multiscatterColor",

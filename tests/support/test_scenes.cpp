@@ -40,6 +40,21 @@ MaterialDescription glass(float roughness) {
   return m;
 }
 
+PunctualLightDescription point_lamp(const Vec3f& at, float intensity) {
+  PunctualLightDescription light;
+  light.intensity = intensity;
+  light.to_world.origin = at;
+  return light;
+}
+
+PunctualLightDescription sun(const Vec3f& shines, float irradiance) {
+  PunctualLightDescription light;
+  light.kind = PunctualLightDescription::Kind::directional;
+  light.intensity = irradiance;
+  light.to_world.z = -normalize(shines);
+  return light;
+}
+
 MeshDescription parallelogram(const Vec3f& corner, const Vec3f& a, const Vec3f& b) {
   MeshDescription mesh;
   mesh.positions = {corner, corner + a, corner + a + b, corner + b};
@@ -78,6 +93,12 @@ MeshDescription sphere(const Vec3f& center, float radius, int rings, int segment
       if (i > 0) mesh.triangles.push_back({at(i, j), at(i, j + 1), at(i + 1, j)});
       if (i + 1 < rings) mesh.triangles.push_back({at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)});
     }
+  return mesh;
+}
+
+MeshDescription smooth_sphere(const Vec3f& center, float radius, int rings, int segments) {
+  MeshDescription mesh = sphere(center, radius, rings, segments);
+  for (const Vec3f& at : mesh.positions) mesh.normals.push_back(normalize(at - center));
   return mesh;
 }
 

@@ -24,12 +24,18 @@ MaterialDescription plastic(float roughness);
 /// Clear boundary of a volume of index 1.5.
 MaterialDescription glass(float roughness);
 
+/// A lamp that shines evenly all around, and one at infinity that shines along `shines`.
+PunctualLightDescription point_lamp(const Vec3f& at, float intensity);
+PunctualLightDescription sun(const Vec3f& shines, float irradiance);
+
 /// Parallelogram with the front toward cross(a, b); texture coordinates go from 0 to 1 along a and b.
 MeshDescription parallelogram(const Vec3f& corner, const Vec3f& a, const Vec3f& b);
 /// Closed box, fronts outward or inward.
 MeshDescription box(const Vec3f& lower, const Vec3f& upper, bool inward = false);
 /// Sphere of rings * segments * 2 triangles, vertices on it, flat shading, fronts outward.
 MeshDescription sphere(const Vec3f& center, float radius, int rings, int segments);
+/// The same with the normals of a true sphere.
+MeshDescription smooth_sphere(const Vec3f& center, float radius, int rings, int segments);
 /// Regular polygon of n corners on a circle at height y, front downward.
 MeshDescription disk_facing_down(float y, float radius, int n);
 
