@@ -95,6 +95,6 @@ std::span<const IntegratorEntry> integrators();
 std::unique_ptr<Integrator> make_integrator(const std::string& name, const IntegratorOptions& options);
 
 /// Names that raycast's IntegratorOptions::show takes.
-std::span<const std::string_view> raycast_shows();
+std::span<const std::string_view> raycast_outputs();
 
 }  // namespace vernier

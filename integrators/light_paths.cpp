@@ -263,7 +263,7 @@ Passage LightPaths::sightline(const Interaction& at, const Camera::Sight& sight,
   ray.time = at.time;
   Segment segment = camera_segment(scene_, ray);
   segment.ray.t_max = dot(target - sight.origin, direction);
-  segment.ray.reaches = at.triangle();
+  segment.ray.target_triangle = at.triangle();
   if (!(segment.ray.t_max > 0)) return {};
   Passage passage{camera_response(scene_, segment)};
   auto hit = intersect_from_camera(scene_, segment);
@@ -275,7 +275,7 @@ Passage LightPaths::sightline(const Interaction& at, const Camera::Sight& sight,
     ++passage.surfaces;
     segment = hit->spawn(direction);
     segment.ray.t_max = dot(target - segment.ray.origin, direction);
-    segment.ray.reaches = at.triangle();
+    segment.ray.target_triangle = at.triangle();
     if (!(segment.ray.t_max > 0)) break;
     hit = intersect(scene_, segment);
   }

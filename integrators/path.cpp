@@ -50,7 +50,7 @@ class PathIntegrator : public Integrator {
       }
       const bool in_medium = hit && hit->is_in_medium();
       if (!in_medium && !(vertex == 1 && is_brought(context, hit)))
-        add(out, depth, throughput * met_emission(scene, last, segment.ray, hit),
+        add(out, depth, throughput * emission_with_mis(scene, last, segment.ray, hit),
             {context, route, source_of(hit)});
       if (!hit) break;
 
@@ -176,12 +176,12 @@ class PathIntegrator : public Integrator {
   }
 
   /// Emission met by a ray, weighted against next-event estimation: area lights and environment alike.
-  Rgb met_emission(const Scene& scene, const Scattering& last, const Ray& ray,
-                   const std::optional<Interaction>& hit) const {
-    const bool only_met = last.is_delta || options_.light_sampling == LightSampling::bsdf;
+  Rgb emission_with_mis(const Scene& scene, const Scattering& last, const Ray& ray,
+                        const std::optional<Interaction>& hit) const {
+    const bool skip_mis = last.is_delta || options_.light_sampling == LightSampling::bsdf;
     const auto [radiance, light_pdf] =
-        scene.emitted(only_met ? nullptr : &*last.from, ray, hit ? &*hit : nullptr);
-    if (only_met || light_pdf == 0) return radiance;
+        scene.emitted(skip_mis ? nullptr : &*last.from, ray, hit ? &*hit : nullptr);
+    if (skip_mis || light_pdf == 0) return radiance;
     if (options_.light_sampling == LightSampling::light) return {0, 0, 0};
     return radiance * power_heuristic(last.pdf, light_pdf);
   }

@@ -16,14 +16,14 @@ Rgb color_of(uint64_t number) {
   return {float(h & 255) / 255, float((h >> 8) & 255) / 255, float((h >> 16) & 255) / 255};
 }
 
-using Show = Rgb (*)(const Scene&, const Ray&, const SurfacePoint&);
+using Output = Rgb (*)(const Scene&, const Ray&, const SurfacePoint&);
 
-struct ShowEntry {
+struct OutputEntry {
   std::string_view name;
-  Show show;
+  Output output;
 };
 
-constexpr std::array<ShowEntry, 7> shows{{
+constexpr std::array<OutputEntry, 7> outputs{{
     {"normal",  // shading normal toward the viewer, [-1,1] shown as [0,1]
      [](const Scene& scene, const Ray& ray, const SurfacePoint& hit) {
        return Rgb((scene.shade(hit, -ray.direction).normal() + Vec3f(1, 1, 1)) * 0.5f);
@@ -56,7 +56,7 @@ constexpr std::array<ShowEntry, 7> shows{{
 class RaycastIntegrator : public Integrator {
  public:
   explicit RaycastIntegrator(const IntegratorOptions& options)
-      : show_(find_by_name(shows, "thing to show", options.show).show),
+      : output_(find_by_name(outputs, "thing to show", options.show).output),
         background_apart_(options.background_apart) {}
 
   Estimate estimate(const Scene& scene, const Ray& ray, Sampler&, const SampleContext&) const override {
@@ -65,14 +65,14 @@ class RaycastIntegrator : public Integrator {
     const auto hit = scene.intersect(ray);
     out.met_surface = hit.has_value();
     if (hit)
-      out.radiance = show_(scene, ray, *hit);
+      out.radiance = output_(scene, ray, *hit);
     else if (background_apart_)
       out.background = {1, 1, 1};
     return out;
   }
 
  private:
-  Show show_;
+  Output output_;
   bool background_apart_;
 };
 
@@ -82,10 +82,10 @@ std::unique_ptr<Integrator> make_raycast(const IntegratorOptions& options) {
   return std::make_unique<RaycastIntegrator>(options);
 }
 
-std::span<const std::string_view> raycast_shows() {
+std::span<const std::string_view> raycast_outputs() {
   static const auto names = [] {
-    std::array<std::string_view, shows.size()> result;
-    for (size_t i = 0; i < shows.size(); ++i) result[i] = shows[i].name;
+    std::array<std::string_view, outputs.size()> result;
+    for (size_t i = 0; i < outputs.size(); ++i) result[i] = outputs[i].name;
     return result;
   }();
   return names;

@@ -27,7 +27,7 @@ std::unique_ptr<Integrator> make_integrator(const std::string& name, const Integ
   const IntegratorEntry& entry = find_by_name(integrators(), "integrator", name);
   if (options.max_depth < 1)
     throw Error(ErrorKind::usage, "a path has at least one vertex; set IntegratorOptions::max_depth");
-  const std::vector<std::string> shows(raycast_shows().begin(), raycast_shows().end());
+  const std::vector<std::string> shows(raycast_outputs().begin(), raycast_outputs().end());
   if (std::find(shows.begin(), shows.end(), options.show) == shows.end())
     throw_unknown_name("--show", options.show, shows);
   return entry.make(options);

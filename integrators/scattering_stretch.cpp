@@ -15,12 +15,12 @@ float margin(const Segment& segment, const Interaction& hit) {
 }  // namespace
 
 ScatteringStretch::ScatteringStretch(const Scene& scene, const Segment& segment, const Stretch& stretch,
-                                     const std::optional<Interaction>& hit, const Rgb& carried)
+                                     const std::optional<Interaction>& hit, const Rgb& throughput)
     : scene_(scene),
       segment_(segment),
       begin_(stretch.begin),
       length_(stretch.end - stretch.begin),
-      flight_(stretch.medium, carried, length_) {
+      flight_(stretch.medium, throughput, length_) {
   const float last = hit ? std::min(stretch.end, hit->t - margin(segment, *hit)) : stretch.end;
   length_ = std::max(last - begin_, 0.f);
   // Lamps beyond a boundary that bends are not seen from inside.

@@ -16,10 +16,10 @@ constexpr uint32_t chain_blocks = 1u << 21;
 /// of lamps is weighted between them (Veach 1997, section 9.2).
 class ScatteringStretch {
  public:
-  /// `hit` ends the segment, if anything does; `carried` is the throughput of the path. Scene and segment
+  /// `hit` ends the segment, if anything does; `throughput` is the throughput of the path. Scene and segment
   /// must live as long.
   ScatteringStretch(const Scene& scene, const Segment& segment, const Stretch& stretch,
-                    const std::optional<Interaction>& hit, const Rgb& carried);
+                    const std::optional<Interaction>& hit, const Rgb& throughput);
 
   /// Moves `hit` to where light that travels along the segment is scattered first, u in [0, 1), if it is.
   /// Returns the weight of what gets there and is scattered, or of what gets to the end, over the density.

@@ -35,8 +35,8 @@ struct SpecularChain::Sheet {
 };
 
 SpecularChain::SpecularChain(const Scene& scene, const Interaction& from, const Vec3d& direction,
-                             const Rgb& carried)
-    : scene_(scene), segment_(from.spawn(Vec3f(direction))), carried_(carried) {
+                             const Rgb& throughput)
+    : scene_(scene), segment_(from.spawn(Vec3f(direction))), throughput_(throughput) {
   const Tangents tangents(direction);
   pencil_ = {Vec3d(from.position), direction, {Vec3d(0, 0, 0), Vec3d(0, 0, 0)}, {tangents.x, tangents.y}};
 }
@@ -45,7 +45,7 @@ bool SpecularChain::meet() {
   next_ = intersect(scene_, segment_);
   if (!next_ || scene_.material(*next_).has_normal_maps()) return false;
   weight_ *= transmittance(scene_.volumes().stretch(segment_.media, segment_.ray, 0, next_->t));
-  lobes_ = shade(scene_, *next_, -segment_.ray.direction, carried_).delta();
+  lobes_ = shade(scene_, *next_, -segment_.ray.direction, throughput_).delta();
   return !is_black(lobes_.reflected) || !is_black(lobes_.transmitted);
 }
 

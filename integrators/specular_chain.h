@@ -45,8 +45,8 @@ class ChainEvents {
 /// their BSDFs have. Surfaces with normal textures end it, since nothing tells how these bend.
 class SpecularChain {
  public:
-  /// Leaves `from` in the unit direction, with light of the channels of `carried`.
-  SpecularChain(const Scene& scene, const Interaction& from, const Vec3d& direction, const Rgb& carried);
+  /// Leaves `from` in the unit direction, with light of the channels of `throughput`.
+  SpecularChain(const Scene& scene, const Interaction& from, const Vec3d& direction, const Rgb& throughput);
 
   /// Looks for the next surface. Whether it has sharp lobes, by which the chain can go on.
   bool meet();
@@ -77,7 +77,7 @@ class SpecularChain {
   std::optional<Interaction> next_;
   DeltaLobes lobes_;
   Pencil pencil_;
-  Rgb carried_, weight_{1, 1, 1};
+  Rgb throughput_, weight_{1, 1, 1};
   bool is_straight_ = false;
 };
 

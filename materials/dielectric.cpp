@@ -13,7 +13,7 @@ const Dispersion& Dispersion::of(const std::array<float, 3>& eta) {
   const auto [entry, is_new] = dispersions.try_emplace(eta);
   if (is_new) {
     entry->second.eta = eta;
-    for (size_t c = 0; c < 3; ++c) entry->second.energy[c] = &GlassEnergy::of(eta[c]);
+    for (size_t c = 0; c < 3; ++c) entry->second.energy[c] = &DielectricAlbedo::of(eta[c]);
   }
   return entry->second;
 }

@@ -6,14 +6,14 @@
 #include "materials/bsdf_sample.h"
 #include "materials/fresnel.h"
 #include "materials/ggx.h"
-#include "materials/tables/glass_energy.h"
+#include "materials/tables/dielectric_albedo.h"
 
 namespace vernier {
 
 /// Relative indices of a boundary that bends colours differently, red, green, blue, with their energy tables.
 struct Dispersion {
   std::array<float, 3> eta;
-  std::array<const GlassEnergy*, 3> energy;
+  std::array<const DielectricAlbedo*, 3> energy;
 
   /// The one of these indices, kept for good. May be called from any thread.
   static const Dispersion& of(const std::array<float, 3>& eta);
@@ -36,8 +36,8 @@ struct Dielectric {
   /// (KHR_materials_specular).
   Fresnel fresnel{};
   bool thin = false;
-  const GlassEnergy* energy = nullptr;     ///< of eta; needed when rough and not thin
-  const Dispersion* dispersion = nullptr;  ///< indices of the three colours, if they differ
+  const DielectricAlbedo* energy = nullptr;  ///< of eta; needed when rough and not thin
+  const Dispersion* dispersion = nullptr;    ///< indices of the three colours, if they differ
 
   BsdfEval eval(const Vec3f& wo, const Vec3f& wi) const {
     if (dispersion) return eval_dispersed(wo, wi);
@@ -170,7 +170,7 @@ struct Dielectric {
 
   /// Fraction of light that single_scattering() returns when it absorbs none.
   float single_albedo(const Vec3f& wo) const {
-    if (thin) return 1 - ggx_albedo(wo, ggx).missing;
+    if (thin) return 1 - ggx_albedo(wo, ggx).energy_loss;
     return energy->albedo(wo.z, ggx.mean_width(), {max_component(fresnel.f0), fresnel.f90});
   }
 

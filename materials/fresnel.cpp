@@ -23,7 +23,7 @@ SchlickCurve Fresnel::bound() const {
   for (const float cosine : {1.f, 0.95f, 0.9f, 0.83f, 0.75f, 0.65f, 0.55f})
     curve.f0 += std::max(excess(cosine), 0.f) / (1 - schlick_weight(cosine));
   for (const float cosine : {0.45f, 0.35f, 0.25f, 0.15f, 0.07f, 0.02f})
-    curve.bulge = std::max(curve.bulge, excess(cosine) / (cosine * square(square(1 - cosine))));
+    curve.quartic = std::max(curve.quartic, excess(cosine) / (cosine * square(square(1 - cosine))));
   return curve;
 }
 

@@ -37,25 +37,29 @@ inline Rgb fresnel_schlick(const Rgb& f0, const Rgb& f90, float cos_theta) {
 inline float f0_from_ior(float eta) { return square((eta - 1) / (eta + 1)); }
 
 /// Schlick's curve of one channel, or a curve that no channel exceeds:
-/// f0 + (f90 - f0) x^5 + bulge (x^4 - x^5), x = 1 - cos.
+/// f0 + (f90 - f0) x^5 + quartic (x^4 - x^5), x = 1 - cos.
 struct SchlickCurve {
   float f0 = 0, f90 = 1;
-  float bulge = 0;  ///< thin films come to reflect everything sooner toward grazing
+  float quartic = 0;  ///< thin films come to reflect everything sooner toward grazing
 
-  /// Share of light that a GGX surface of this reflectance returns; with a bulge an upper bound, by Jensen's
-  /// inequality for the mean of the concave function x^4 of x^5.
-  float albedo(const GgxAlbedo& ggx) const { return straight(ggx) + bulge * (quartic(ggx, 1) - ggx.bias); }
+  /// Share of light that a GGX surface of this reflectance returns; with a quartic an upper bound, by
+  /// Jensen's inequality for the mean of the concave function x^4 of x^5.
+  float albedo(const GgxAlbedo& ggx) const {
+    return linear_part(ggx) + quartic * (quartic_part(ggx, 1) - ggx.schlick_bias);
+  }
   /// The same from the mean over the hemisphere, where x^5 is 1/21 and x^4 1/15 for a smooth surface.
   float mean_albedo(const GgxAlbedo& ggx) const {
-    return straight(ggx) + bulge * (quartic(ggx, 21) / 15 - ggx.bias);
+    return linear_part(ggx) + quartic * (quartic_part(ggx, 21) / 15 - ggx.schlick_bias);
   }
 
  private:
-  float straight(const GgxAlbedo& ggx) const { return f0 * (1 - ggx.missing - ggx.bias) + f90 * ggx.bias; }
-  float quartic(const GgxAlbedo& ggx, float scale) const {
-    if (bulge == 0) return 0;
-    const float facets = 1 - ggx.missing;
-    return facets * std::pow(scale * ggx.bias / facets, 0.8f);
+  float linear_part(const GgxAlbedo& ggx) const {
+    return f0 * (1 - ggx.energy_loss - ggx.schlick_bias) + f90 * ggx.schlick_bias;
+  }
+  float quartic_part(const GgxAlbedo& ggx, float scale) const {
+    if (quartic == 0) return 0;
+    const float facets = 1 - ggx.energy_loss;
+    return facets * std::pow(scale * ggx.schlick_bias / facets, 0.8f);
   }
 };
 
@@ -83,7 +87,7 @@ struct Fresnel {
   /// Of a GGX surface seen at cos_theta. Exact without film; with one, as if all facets reflected as the
   /// surface does.
   Rgb albedo(const GgxAlbedo& ggx, float cos_theta) const {
-    return film ? (*this)(cos_theta) * (1 - ggx.missing) : ggx.with(f0, Rgb(f90));
+    return film ? (*this)(cos_theta) * (1 - ggx.energy_loss) : ggx.with(f0, Rgb(f90));
   }
 
   /// Cosine-weighted mean over the hemisphere; Schlick's is f0 + (f90 - f0) / 21.

@@ -12,9 +12,9 @@ Rgb mix(float t, const Rgb& a, const Rgb& b) { return a * (1 - t) + b * t; }
 
 }  // namespace
 
-Glossy Glossy::metal(const Fresnel& fresnel, const Ggx& ggx) {
+Glossy Glossy::conductor(const Fresnel& fresnel, const Ggx& ggx) {
   Glossy result(fresnel, ggx);
-  const float missing = average(ggx).missing;
+  const float missing = average(ggx).energy_loss;
   if (missing <= 0) return result;
   // Each further bounce is reflected by the mean Fresnel reflectance (Kulla and Conty 2017).
   const Rgb f = fresnel.mean();
@@ -23,23 +23,23 @@ Glossy Glossy::metal(const Fresnel& fresnel, const Ggx& ggx) {
   return result;
 }
 
-Glossy Glossy::plastic(const Fresnel& fresnel, const Ggx& ggx, const DiffuseBody& body) {
+Glossy Glossy::coated_diffuse(const Fresnel& fresnel, const Ggx& ggx, const DiffuseBase& base) {
   Glossy result(fresnel, ggx);
-  result.body_ = body;
+  result.base_ = base;
   result.bound_ = fresnel.bound();
   const float entering = 1 - result.bound_.mean_albedo(average(ggx));
-  result.body_scale_ = entering > 0 ? 1 / entering : 0;
+  result.base_scale_ = entering > 0 ? 1 / entering : 0;
   return result;
 }
 
-Glossy Glossy::mix(const Glossy& plastic, const Glossy& metal, float metallic) {
-  Glossy result = plastic;
-  result.fresnel_.f0 = vernier::mix(metallic, plastic.fresnel_.f0, metal.fresnel_.f0);
-  result.fresnel_.f90 = lerp(metallic, plastic.fresnel_.f90, metal.fresnel_.f90);
-  result.body_.reflected *= 1 - metallic;
-  result.body_.transmitted *= 1 - metallic;
-  result.multiple_ = metal.multiple_ * metallic;
-  result.multiple_scale_ = metal.multiple_scale_;
+Glossy Glossy::mix(const Glossy& coated_diffuse, const Glossy& conductor, float metallic) {
+  Glossy result = coated_diffuse;
+  result.fresnel_.f0 = vernier::mix(metallic, coated_diffuse.fresnel_.f0, conductor.fresnel_.f0);
+  result.fresnel_.f90 = lerp(metallic, coated_diffuse.fresnel_.f90, conductor.fresnel_.f90);
+  result.base_.reflected *= 1 - metallic;
+  result.base_.transmitted *= 1 - metallic;
+  result.multiple_ = conductor.multiple_ * metallic;
+  result.multiple_scale_ = conductor.multiple_scale_;
   return result;
 }
 

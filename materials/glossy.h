@@ -10,31 +10,31 @@
 namespace vernier {
 
 /// What lies under a clear surface and scatters diffusely.
-struct DiffuseBody {
+struct DiffuseBase {
   Rgb reflected{0, 0, 0};
   Rgb transmitted{0, 0, 0};  ///< to the other side (glTF KHR_materials_diffuse_transmission)
   float eta = 1;  ///< index of the other side over that of the side of wo, where light is bent there too
 };
 
-/// GGX facets with a diffuse body under them: glTF's metal, its non-metal, and any mixture of both, which all
+/// GGX facets with a diffuse base under them: glTF's metal, its non-metal, and any mixture of both, which all
 /// share one lobe of facets because Schlick's reflectance is linear in its parameters.
 ///
 /// A metal's facets give back what they block of each other as a diffuse-like lobe, so that a white metal
 /// reflects everything (Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks", SIGGRAPH
-/// course). A non-metal's body receives what the surface does not reflect on the way in and out, (1 - E(wo))
-/// (1 - E(wi)) normalised, which is reciprocal and loses nothing when the body is white; glTF 2.0 Appendix
+/// course). A non-metal's base receives what the surface does not reflect on the way in and out, (1 - E(wo))
+/// (1 - E(wi)) normalized, which is reciprocal and loses nothing when the base is white; glTF 2.0 Appendix
 /// B's own example, 1 - F(h.v), is neither (Ashikhmin and Shirley 2000; Kelemen and Szirmay-Kalos 2001). E is
-/// that of the colour channel that reflects most, so that a coloured surface does not tint the body with its
+/// that of the colour channel that reflects most, so that a coloured surface does not tint the base with its
 /// complement (KHR_materials_specular).
 class Glossy {
  public:
-  static Glossy metal(const Fresnel& fresnel, const Ggx& ggx);
-  static Glossy plastic(const Fresnel& fresnel, const Ggx& ggx, const DiffuseBody& body);
+  static Glossy conductor(const Fresnel& fresnel, const Ggx& ggx);
+  static Glossy coated_diffuse(const Fresnel& fresnel, const Ggx& ggx, const DiffuseBase& base);
   /// `metallic` parts of one to the rest of the other, of the same width and film.
-  static Glossy mix(const Glossy& plastic, const Glossy& metal, float metallic);
+  static Glossy mix(const Glossy& coated_diffuse, const Glossy& conductor, float metallic);
 
   BsdfEval eval(const Vec3f& wo, const Vec3f& wi) const {
-    if (wi.z < 0 && is_black(body_.transmitted)) return {};
+    if (wi.z < 0 && is_black(base_.transmitted)) return {};
     return eval(wo, wi, seen_from(wo));
   }
 
@@ -44,7 +44,8 @@ class Glossy {
     Lobe lobe = Lobe::diffuse;
     if (u < view.facet_prob) {
       if (ggx_.is_smooth())
-        return BsdfSample{reflect(wo), view.facets / view.facet_prob, view.facet_prob, Lobe::delta, 1};
+        return BsdfSample{reflect(wo), view.specular_albedo / view.facet_prob, view.facet_prob, Lobe::delta,
+                          1};
       const Vec3f m = ggx_.sample_visible(wo, v);
       wi = 2 * dot(wo, m) * m - wo;
       if (wi.z <= 0) return std::nullopt;
@@ -55,17 +56,17 @@ class Glossy {
     }
     const BsdfEval value = eval(wo, wi, view);
     if (!(value.pdf > 0)) return std::nullopt;
-    return BsdfSample{wi, value.f_cos / value.pdf, value.pdf, lobe, wi.z < 0 ? body_.eta : 1};
+    return BsdfSample{wi, value.f_cos / value.pdf, value.pdf, lobe, wi.z < 0 ? base_.eta : 1};
   }
 
   Rgb diffuse(const Vec3f& wo, const Vec3f& wi) const {
-    return scattered_by_body(seen_from(wo), toward(wi), wi.z);
+    return scattered_by_base(seen_from(wo), toward(wi), wi.z);
   }
 
   Rgb albedo(const Vec3f& wo) const {
     const GgxAlbedo ggx = ggx_toward(wo);
-    return fresnel_.albedo(ggx, wo.z) + multiple_ * ggx.missing +
-           (body_.reflected + body_.transmitted) * (1 - bound_.albedo(ggx));
+    return fresnel_.albedo(ggx, wo.z) + multiple_ * ggx.energy_loss +
+           (base_.reflected + base_.transmitted) * (1 - bound_.albedo(ggx));
   }
 
   SpecularRays specular(const Vec3f& wo) const {
@@ -73,7 +74,7 @@ class Glossy {
   }
   Rgb straight(const Vec3f& /*wo*/) const { return {0, 0, 0}; }
   DeltaLobes delta(const Vec3f& wo) const {
-    return ggx_.is_smooth() ? DeltaLobes{seen_from(wo).facets} : DeltaLobes{};
+    return ggx_.is_smooth() ? DeltaLobes{seen_from(wo).specular_albedo} : DeltaLobes{};
   }
 
  private:
@@ -81,9 +82,9 @@ class Glossy {
 
   /// All that depends on wo alone, with the choice among the lobes.
   struct View {
-    Rgb facets;     ///< fraction of light they reflect
-    float enters;   ///< fraction that gets to the body
-    float missing;  ///< fraction that facets block
+    Rgb specular_albedo;  ///< fraction of light they reflect
+    float base_weight;    ///< fraction that gets to the base
+    float energy_loss;    ///< fraction that facets block
     float facet_prob, reflect_prob;
   };
 
@@ -93,10 +94,11 @@ class Glossy {
 
   View seen_from(const Vec3f& wo) const {
     const GgxAlbedo ggx = ggx_toward(wo);
-    View view{fresnel_.albedo(ggx, wo.z), 1 - bound_.albedo(ggx), ggx.missing, 1, 0};
-    const float facets = luminance(view.facets);
-    const float reflected = luminance(body_.reflected) * view.enters + luminance(multiple_) * ggx.missing;
-    const float sum = facets + reflected + luminance(body_.transmitted) * view.enters;
+    View view{fresnel_.albedo(ggx, wo.z), 1 - bound_.albedo(ggx), ggx.energy_loss, 1, 0};
+    const float facets = luminance(view.specular_albedo);
+    const float reflected =
+        luminance(base_.reflected) * view.base_weight + luminance(multiple_) * ggx.energy_loss;
+    const float sum = facets + reflected + luminance(base_.transmitted) * view.base_weight;
     if (sum > 0) {
       view.facet_prob = facets / sum;
       view.reflect_prob = reflected / sum;
@@ -107,19 +109,19 @@ class Glossy {
   /// What the facets do with light from wi, on either side.
   GgxAlbedo toward(const Vec3f& wi) const { return ggx_toward({wi.x, wi.y, std::abs(wi.z)}); }
 
-  Rgb scattered_by_body(const View& view, const GgxAlbedo& toward_wi, float cos_i) const {
-    const float body =
-        view.enters * (1 - bound_.albedo(toward_wi)) * body_scale_ * cosine_hemisphere_pdf(std::abs(cos_i));
-    return cos_i < 0 ? body_.transmitted * (body / square(body_.eta)) : body_.reflected * body;
+  Rgb scattered_by_base(const View& view, const GgxAlbedo& toward_wi, float cos_i) const {
+    const float base = view.base_weight * (1 - bound_.albedo(toward_wi)) * base_scale_ *
+                       cosine_hemisphere_pdf(std::abs(cos_i));
+    return cos_i < 0 ? base_.transmitted * (base / square(base_.eta)) : base_.reflected * base;
   }
 
   BsdfEval eval(const Vec3f& wo, const Vec3f& wi, const View& view) const {
     const GgxAlbedo ggx = toward(wi);
     const float cosine = cosine_hemisphere_pdf(std::abs(wi.z));
-    const Rgb body = scattered_by_body(view, ggx, wi.z);
-    if (wi.z < 0) return {body, std::max(0.f, 1 - view.facet_prob - view.reflect_prob) * cosine};
-    const float multiple = view.missing * ggx.missing * multiple_scale_ * cosine;
-    BsdfEval value{body + multiple_ * multiple, view.reflect_prob * cosine};
+    const Rgb base = scattered_by_base(view, ggx, wi.z);
+    if (wi.z < 0) return {base, std::max(0.f, 1 - view.facet_prob - view.reflect_prob) * cosine};
+    const float multiple = view.energy_loss * ggx.energy_loss * multiple_scale_ * cosine;
+    BsdfEval value{base + multiple_ * multiple, view.reflect_prob * cosine};
     if (ggx_.is_smooth()) return value;
     const Vec3f m = normalize(wo + wi);
     const float lambda_o = ggx_.lambda(wo);
@@ -131,9 +133,9 @@ class Glossy {
 
   Fresnel fresnel_;
   Ggx ggx_;
-  DiffuseBody body_;
-  SchlickCurve bound_;        ///< of what the surface over the body reflects
-  float body_scale_ = 0;      ///< 1 / (1 - its mean)
+  DiffuseBase base_;
+  SchlickCurve bound_;        ///< of what the surface over the base reflects
+  float base_scale_ = 0;      ///< 1 / (1 - its mean)
   Rgb multiple_{0, 0, 0};     ///< colour of light that met more than one facet
   float multiple_scale_ = 0;  ///< 1 / mean of what facets block
 };

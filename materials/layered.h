@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "materials/coat.h"
+#include "materials/clearcoat.h"
 #include "materials/mixture.h"
 #include "materials/sheen.h"
 
@@ -10,7 +10,7 @@ namespace vernier {
 /// glTF's base layer under sheen, under a clear coat; either may be missing.
 class Layered {
  public:
-  Layered(const Mixture& base, const Sheen& sheen, const Coat& coat)
+  Layered(const Mixture& base, const Sheen& sheen, const Clearcoat& coat)
       : base_(base), sheen_(sheen), coat_(coat) {}
 
   BsdfEval eval(const Vec3f& wo, const Vec3f& wi) const { return eval(wo, wi, seen_from(wo)); }
@@ -72,7 +72,7 @@ class Layered {
 
   Mixture base_;
   Sheen sheen_;
-  Coat coat_;
+  Clearcoat coat_;
 };
 
 }  // namespace vernier

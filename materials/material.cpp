@@ -99,14 +99,14 @@ Material::Side Material::make_side(bool front, const Rgb& outside_ior) const {
   Side side;
   side.eta = eta(1);
   if (thin) return side;
-  side.energy = &GlassEnergy::of(side.eta);
+  side.energy = &DielectricAlbedo::of(side.eta);
   if (eta(0) != side.eta || eta(2) != side.eta) side.dispersion = &Dispersion::of({eta(0), eta(1), eta(2)});
   return side;
 }
 
-Material::Side Material::side(const Encounter& encounter) const {
-  if (encounter.outside_ior == Rgb(1, 1, 1)) return sides_[encounter.front];
-  return make_side(encounter.front, encounter.outside_ior);
+Material::Side Material::side(const BsdfContext& context) const {
+  if (context.outside_ior == Rgb(1, 1, 1)) return sides_[context.front];
+  return make_side(context.front, context.outside_ior);
 }
 
 Vec4f Material::read(const TextureUse& use, const SurfaceAttributes& attributes,
@@ -123,30 +123,30 @@ Vec4f Material::base_color(const SurfaceAttributes& attributes) const {
   return color;
 }
 
-Bsdf Material::bsdf(const SurfaceAttributes& attributes, const Encounter& encounter) const {
-  if (is_constant_ && !encounter.channel && encounter.outside_ior == Rgb(1, 1, 1))
-    return encounter.front ? constant_front_ : constant_back_;
-  return make_bsdf(attributes, encounter);
+Bsdf Material::bsdf(const SurfaceAttributes& attributes, const BsdfContext& context) const {
+  if (is_constant_ && !context.channel && context.outside_ior == Rgb(1, 1, 1))
+    return context.front ? constant_front_ : constant_back_;
+  return make_bsdf(attributes, context);
 }
 
-Bsdf Material::make_bsdf(const SurfaceAttributes& attributes, const Encounter& encounter) const {
+Bsdf Material::make_bsdf(const SurfaceAttributes& attributes, const BsdfContext& context) const {
   if (description_.unlit) return Lambert{};
-  const Base base = read_base(attributes, encounter);
+  const Base base = read_base(attributes, context);
   // Sheen and coat lie on the outside of a volume.
-  if (encounter.front || !is_volume_boundary()) {
+  if (context.front || !is_volume_boundary()) {
     const Sheen sheen = read_sheen(attributes);
-    const Coat coat = read_coat(attributes, encounter);
-    if (sheen || coat) return Layered(mixture(base, encounter), sheen, coat);
+    const Clearcoat coat = read_coat(attributes, context);
+    if (sheen || coat) return Layered(mixture(base, context), sheen, coat);
   }
-  if (base.metallic >= 1) return Glossy::metal(base.metal, base.ggx);
-  if (base.transmission >= 1 && base.metallic <= 0) return glass(base, encounter);
-  if (base.transmission > 0) return mixture(base, encounter);
+  if (base.metallic >= 1) return Glossy::conductor(base.metal, base.ggx);
+  if (base.transmission >= 1 && base.metallic <= 0) return glass(base, context);
+  if (base.transmission > 0) return mixture(base, context);
   const bool matte = base.dielectric.f90 <= 0 && !base.dielectric.film && is_black(base.body.transmitted);
   if (matte && base.metallic <= 0) return Lambert{base.body.reflected};
-  return glossy(base, base.metallic, encounter);
+  return glossy(base, base.metallic, context);
 }
 
-Material::Base Material::read_base(const SurfaceAttributes& attributes, const Encounter& encounter) const {
+Material::Base Material::read_base(const SurfaceAttributes& attributes, const BsdfContext& context) const {
   const auto& d = description_;
   Base base;
   base.color = rgb(base_color(attributes));
@@ -165,17 +165,17 @@ Material::Base Material::read_base(const SurfaceAttributes& attributes, const En
   }
   base.metal = {base.color, 1, read_film(attributes)};
   base.body.reflected = base.color;
-  if (base.metallic < 1) read_dielectric(attributes, encounter, base);
+  if (base.metallic < 1) read_dielectric(attributes, context, base);
   return base;
 }
 
-void Material::read_dielectric(const SurfaceAttributes& attributes, const Encounter& encounter,
+void Material::read_dielectric(const SurfaceAttributes& attributes, const BsdfContext& context,
                                Base& base) const {
   const auto& d = description_;
   // KHR_materials_specular on top of KHR_materials_ior; an index of 0 asks for full reflectance.
   const float f90 = d.specular * read(d.specular_texture, attributes, TexelEncoding::linear).w;
   const Rgb color = d.specular_color * rgb(read(d.specular_color_texture, attributes, TexelEncoding::srgb));
-  const float f0 = d.ior == 0 ? 1 : f0_from_ior(d.ior / encounter.outside_ior[1]);
+  const float f0 = d.ior == 0 ? 1 : f0_from_ior(d.ior / context.outside_ior[1]);
   base.dielectric = {color, f90, base.metal.film};
   for (int c = 0; c < 3; ++c) base.dielectric.f0[c] = std::min(f0 * color[c], 1.f) * f90;
 
@@ -210,35 +210,35 @@ float Material::coat_weight(const SurfaceAttributes& attributes) const {
   return description_.clearcoat * read(description_.clearcoat_texture, attributes, TexelEncoding::linear).x;
 }
 
-Coat Material::read_coat(const SurfaceAttributes& attributes, const Encounter& encounter) const {
+Clearcoat Material::read_coat(const SurfaceAttributes& attributes, const BsdfContext& context) const {
   const auto& d = description_;
   const float weight = coat_weight(attributes);
   if (weight <= 0) return {};
   const float roughness =
       d.clearcoat_roughness * read(d.clearcoat_roughness_texture, attributes, TexelEncoding::linear).y;
-  return {weight, square(roughness), encounter.coat_normal};
+  return {weight, square(roughness), context.coat_normal};
 }
 
-Glossy Material::glossy(const Base& base, float metallic, const Encounter& encounter) const {
-  if (metallic >= 1) return Glossy::metal(base.metal, base.ggx);
-  DiffuseBody body = base.body;
-  if (description_.transmission > 0 && is_volume_boundary()) body.eta = side(encounter).eta;
-  const Glossy plastic = Glossy::plastic(base.dielectric, base.ggx, body);
-  return metallic > 0 ? Glossy::mix(plastic, Glossy::metal(base.metal, base.ggx), metallic) : plastic;
+Glossy Material::glossy(const Base& base, float metallic, const BsdfContext& context) const {
+  if (metallic >= 1) return Glossy::conductor(base.metal, base.ggx);
+  DiffuseBase body = base.body;
+  if (description_.transmission > 0 && is_volume_boundary()) body.eta = side(context).eta;
+  const Glossy plastic = Glossy::coated_diffuse(base.dielectric, base.ggx, body);
+  return metallic > 0 ? Glossy::mix(plastic, Glossy::conductor(base.metal, base.ggx), metallic) : plastic;
 }
 
-Dielectric Material::glass(const Base& base, const Encounter& encounter) const {
-  const Side side = this->side(encounter);
+Dielectric Material::glass(const Base& base, const BsdfContext& context) const {
+  const Side side = this->side(context);
   const Dielectric result{side.eta,    base.ggx,       base.color, base.dielectric, !is_volume_boundary(),
                           side.energy, side.dispersion};
-  return encounter.channel && side.dispersion ? result.of_channel(*encounter.channel) : result;
+  return context.channel && side.dispersion ? result.of_channel(*context.channel) : result;
 }
 
-Mixture Material::mixture(const Base& base, const Encounter& encounter) const {
+Mixture Material::mixture(const Base& base, const BsdfContext& context) const {
   const float clear = (1 - base.metallic) * base.transmission;
-  if (clear <= 0) return {glossy(base, base.metallic, encounter), {}, 0};
+  if (clear <= 0) return {glossy(base, base.metallic, context), {}, 0};
   const float metallic = clear < 1 ? base.metallic / (1 - clear) : 0;
-  return {glossy(base, metallic, encounter), glass(base, encounter), clear};
+  return {glossy(base, metallic, context), glass(base, context), clear};
 }
 
 Rgb Material::emission(const SurfaceAttributes& attributes, bool front, float cos_theta) const {
@@ -247,7 +247,7 @@ Rgb Material::emission(const SurfaceAttributes& attributes, bool front, float co
   if (d.unlit) return rgb(base_color(attributes));
   Rgb radiance = d.emissive;
   if (d.emissive_texture) radiance *= rgb(read(d.emissive_texture, attributes, TexelEncoding::srgb));
-  if (has_coat()) radiance *= 1 - Coat{coat_weight(attributes)}.reflectance(std::abs(cos_theta));
+  if (has_coat()) radiance *= 1 - Clearcoat{coat_weight(attributes)}.reflectance(std::abs(cos_theta));
   return radiance;
 }
 

@@ -17,7 +17,7 @@ struct SurfaceAttributes {
 };
 
 /// How light meets a surface, as far as its scattering depends on it.
-struct Encounter {
+struct BsdfContext {
   bool front = true;             ///< front faces look to the outside of a volume
   Rgb outside_ior{1, 1, 1};      ///< index of refraction, by channel, of what fills the space on the front
   Vec3f coat_normal{0, 0, 1};    ///< of a clear coat, in the frame that the BSDF is to be used in
@@ -33,7 +33,7 @@ class Material {
   Material(const MaterialDescription& description, std::span<const Texture> textures, bool has_colors);
 
   /// The scattering at a point.
-  Bsdf bsdf(const SurfaceAttributes& attributes, const Encounter& encounter) const;
+  Bsdf bsdf(const SurfaceAttributes& attributes, const BsdfContext& context) const;
 
   /// Radiance emitted at a point on the side given; glTF emits from back faces of double-sided materials
   /// only. A clear coat darkens it by what it reflects; cos_theta: between its normal and the viewer.
@@ -105,13 +105,13 @@ class Material {
     Rgb color{0, 0, 0};
     Ggx ggx;
     Fresnel metal, dielectric;
-    DiffuseBody body;
+    DiffuseBase body;
     float metallic = 0, transmission = 0;
   };
   /// Relative indices of a volume's boundary from one side.
   struct Side {
     float eta = 1;
-    const GlassEnergy* energy = nullptr;
+    const DielectricAlbedo* energy = nullptr;
     const Dispersion* dispersion = nullptr;
   };
 
@@ -122,17 +122,17 @@ class Material {
   Vec4f base_color(const SurfaceAttributes& attributes) const;
   Vec3f read_normal(const TextureUse& use, float scale, const SurfaceAttributes& attributes) const;
 
-  Bsdf make_bsdf(const SurfaceAttributes& attributes, const Encounter& encounter) const;
-  Base read_base(const SurfaceAttributes& attributes, const Encounter& encounter) const;
-  void read_dielectric(const SurfaceAttributes& attributes, const Encounter& encounter, Base& base) const;
+  Bsdf make_bsdf(const SurfaceAttributes& attributes, const BsdfContext& context) const;
+  Base read_base(const SurfaceAttributes& attributes, const BsdfContext& context) const;
+  void read_dielectric(const SurfaceAttributes& attributes, const BsdfContext& context, Base& base) const;
   ThinFilm read_film(const SurfaceAttributes& attributes) const;
   Sheen read_sheen(const SurfaceAttributes& attributes) const;
   float coat_weight(const SurfaceAttributes& attributes) const;
-  Coat read_coat(const SurfaceAttributes& attributes, const Encounter& encounter) const;
-  Glossy glossy(const Base& base, float metallic, const Encounter& encounter) const;
-  Dielectric glass(const Base& base, const Encounter& encounter) const;
-  Mixture mixture(const Base& base, const Encounter& encounter) const;
-  Side side(const Encounter& encounter) const;
+  Clearcoat read_coat(const SurfaceAttributes& attributes, const BsdfContext& context) const;
+  Glossy glossy(const Base& base, float metallic, const BsdfContext& context) const;
+  Dielectric glass(const Base& base, const BsdfContext& context) const;
+  Mixture mixture(const Base& base, const BsdfContext& context) const;
+  Side side(const BsdfContext& context) const;
 
   MaterialDescription description_;
   std::span<const Texture> textures_;

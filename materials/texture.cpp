@@ -40,7 +40,7 @@ struct Neighbours {
   float weight;
 };
 
-Neighbours neighbours(float coordinate, int size, WrapMode mode) {
+Neighbours neighbors(float coordinate, int size, WrapMode mode) {
   const float position = wrapped(coordinate, mode) * float(size) - 0.5f;
   const float first = std::floor(position);
   Neighbours n{int(first), int(first) + 1, position - first};
@@ -90,8 +90,8 @@ Vec4f Texture::sample(const Vec2f& uv, TexelEncoding encoding) const {
     y.first = y.second = nearest(uv.y, image.height, wrap_t_);
     x.weight = y.weight = 0;
   } else {
-    x = neighbours(uv.x, image.width, wrap_s_);
-    y = neighbours(uv.y, image.height, wrap_t_);
+    x = neighbors(uv.x, image.width, wrap_s_);
+    y = neighbors(uv.y, image.height, wrap_t_);
   }
   switch (image.channels) {
     case 1:

@@ -34,7 +34,7 @@ Vec3f xyz(const Vec4f& v) { return {v.x, v.y, v.z}; }
   point.error = (m0 * std::abs(w) + m1 * std::abs(point.u) + m2 * std::abs(point.v)) * gamma_bound(roundings);
   point.ng = cross(p1 - p0, p2 - p0);
   // Triangle tests find t from the vertices as seen from the origin, so they round by the triangle's size
-  // even where the point's own coordinates, and so their rounding, are nought. This much along the normal.
+  // even where the point's own coordinates, and so their rounding, are zero. This much along the normal.
   const float extent =
       max_component(max(abs(p0 - point.position), max(abs(p1 - point.position), abs(p2 - point.position))));
   const Vec3f n = abs(point.ng);

@@ -5,11 +5,11 @@
 
 namespace vernier {
 
-FreeFlight::FreeFlight(const Medium& medium, const Rgb& carried, float length)
+FreeFlight::FreeFlight(const Medium& medium, const Rgb& throughput, float length)
     : medium_(medium), share_(1.f / 3), length_(length) {
-  const float all = carried.x + carried.y + carried.z;
+  const float all = throughput.x + throughput.y + throughput.z;
   // Of next to nothing no quotients can be told.
-  if (all > std::numeric_limits<float>::min() && std::isfinite(all)) share_ = carried / all;
+  if (all > std::numeric_limits<float>::min() && std::isfinite(all)) share_ = throughput / all;
 }
 
 FreeFlight::Sample FreeFlight::sample(double u) const {

@@ -35,8 +35,9 @@ inline Rgb transmittance(const Medium& medium, float distance) {
 /// Wavelength Spectral Sampling", eq. 8).
 class FreeFlight {
  public:
-  /// Of light that may be needed in the channels of `carried`, over `length` metres, which may be infinite.
-  FreeFlight(const Medium& medium, const Rgb& carried, float length);
+  /// Of light that may be needed in the channels of `throughput`, over `length` metres, which may be
+  /// infinite.
+  FreeFlight(const Medium& medium, const Rgb& throughput, float length);
 
   struct Sample {
     float distance;  ///< metres; beyond `length` when nothing scatters

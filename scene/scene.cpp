@@ -46,8 +46,8 @@ std::vector<std::unique_ptr<TriangleLight>> triangle_lights(const SceneGeometry&
     if (!candidates[primitive]) continue;
     // The halves of a quad follow each other in what programs write.
     const size_t next = primitive + 1;
-    const bool joined =
-        next < candidates.size() && candidates[next] && candidates[primitive]->join(*candidates[next]);
+    const bool joined = next < candidates.size() && candidates[next] &&
+                        candidates[primitive]->try_merge_quad(*candidates[next]);
     of_triangle[primitive] = int32_t(count);
     if (joined) {
       of_triangle[next] = int32_t(count);
@@ -179,7 +179,7 @@ void Scene::add_environment(std::shared_ptr<const EnvironmentDescription> descri
   lights.push_back(std::move(light));
 }
 
-void Scene::surround(std::shared_ptr<const EnvironmentDescription> description) {
+void Scene::set_environment(std::shared_ptr<const EnvironmentDescription> description) {
   auto lights = std::move(lights_).release();
   if (environment_) lights.pop_back();  // it is always the last
   environment_ = nullptr;
@@ -227,7 +227,7 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray) const {
   return geometry_.surface_point(ray, *hit);
 }
 
-Shading Scene::shade(const SurfacePoint& point, const Vec3f& wo, Encounter encounter) const {
+Shading Scene::shade(const SurfacePoint& point, const Vec3f& wo, BsdfContext context) const {
   const Material& material = this->material(point);
   const SurfaceAttributes attributes =
       material.needs_attributes() ? geometry_.attributes(point) : SurfaceAttributes{};
@@ -238,7 +238,7 @@ Shading Scene::shade(const SurfacePoint& point, const Vec3f& wo, Encounter encou
 
   const Vec3f smooth = geometry_.shading_normal(point);
   if (!material.needs_tangents())
-    return {Frame::from_normal(facing(smooth * side)), ng, wo, material.bsdf(attributes, encounter)};
+    return {Frame::from_normal(facing(smooth * side)), ng, wo, material.bsdf(attributes, context)};
 
   const auto [tangent, bitangent] = geometry_.tangent_frame(point, smooth, material.tangent_texcoord());
   const auto to_world = [&, t = tangent, b = bitangent](const Vec3f& v) {
@@ -251,9 +251,9 @@ Shading Scene::shade(const SurfacePoint& point, const Vec3f& wo, Encounter encou
     frame = Frame::from_normal_tangent(normal, to_world({direction.x, direction.y, 0}));
   }
   if (material.has_coat())
-    encounter.coat_normal =
+    context.coat_normal =
         frame.to_local(facing(normalize(to_world(material.tangent_space_coat_normal(attributes))) * side));
-  return {frame, ng, wo, material.bsdf(attributes, encounter)};
+  return {frame, ng, wo, material.bsdf(attributes, context)};
 }
 
 LightReceiver Scene::receiver(const SurfacePoint& point) const {
@@ -319,8 +319,8 @@ std::shared_ptr<Scene> build_scene(SceneDescription description, const SceneOpti
   return std::make_shared<Scene>(std::move(description), options);
 }
 
-void surround(Scene& scene, std::shared_ptr<const EnvironmentDescription> environment) {
-  scene.surround(std::move(environment));
+void set_environment(Scene& scene, std::shared_ptr<const EnvironmentDescription> environment) {
+  scene.set_environment(std::move(environment));
 }
 
 void fill_air(Scene& scene, const Fog& fog) { scene.fill_air(fog); }

@@ -30,7 +30,7 @@ class Scene {
 
   /// Puts an environment around the scene, in place of the one it has, if any; null: nothing. Not
   /// while other threads use the scene: what surroundings it needs is told by looking at it.
-  void surround(std::shared_ptr<const EnvironmentDescription> description);
+  void set_environment(std::shared_ptr<const EnvironmentDescription> description);
   bool has_environment() const { return environment_ != nullptr; }
   /// As vernier::fill_air.
   void fill_air(const Fog& fog);
@@ -48,9 +48,9 @@ class Scene {
   /// Whether any triangle lies between the ends of a segment.
   bool occluded(const Ray& segment) const { return accelerator_->occluded(segment); }
 
-  /// The scattering at a surface point toward the unit direction wo, which is met as `encounter` says and is
+  /// The scattering at a surface point toward the unit direction wo, which is met as `context` says and is
   /// completed here.
-  Shading shade(const SurfacePoint& point, const Vec3f& wo, Encounter encounter) const;
+  Shading shade(const SurfacePoint& point, const Vec3f& wo, BsdfContext context) const;
   /// The same in air.
   Shading shade(const SurfacePoint& point, const Vec3f& wo) const {
     return shade(point, wo, {.front = point.front});

@@ -17,9 +17,9 @@ float uncertainty(const Ray& ray, const SurfacePoint& point) {
 }
 
 /// The one colour channel that a path still carries, if only one.
-std::optional<int> only_channel(const Rgb& carried) {
+std::optional<int> single_live_channel(const Rgb& throughput) {
   for (int c = 0; c < 3; ++c)
-    if (carried[c] != 0 && carried[(c + 1) % 3] == 0 && carried[(c + 2) % 3] == 0) return c;
+    if (throughput[c] != 0 && throughput[(c + 1) % 3] == 0 && throughput[(c + 2) % 3] == 0) return c;
   return std::nullopt;
 }
 
@@ -225,16 +225,16 @@ Passage transmittance(const Scene& scene, const Segment& segment) {
   return passage;
 }
 
-Shading shade(const Scene& scene, const Interaction& at, const Vec3f& wo, const Rgb& carried) {
+Shading shade(const Scene& scene, const Interaction& at, const Vec3f& wo, const Rgb& throughput) {
   if (at.is_in_medium())
     return {Frame::from_normal(wo), wo, wo, HenyeyGreenstein{scene.volumes().medium(at.before).anisotropy}};
-  Encounter encounter{.front = at.front};
+  BsdfContext context{.front = at.front};
   if (!at.before.empty() || !at.beyond.empty() || bounds_volume(scene, at.instance)) {
-    encounter.channel = only_channel(carried);
-    encounter.front = scene.volumes().is_met_from_outside(at);
-    encounter.outside_ior = scene.volumes().medium(encounter.front ? at.before : at.beyond).ior;
+    context.channel = single_live_channel(throughput);
+    context.front = scene.volumes().is_met_from_outside(at);
+    context.outside_ior = scene.volumes().medium(context.front ? at.before : at.beyond).ior;
   }
-  return scene.shade(at, wo, encounter);
+  return scene.shade(at, wo, context);
 }
 
 }  // namespace vernier

@@ -83,7 +83,8 @@ struct Passage {
 /// surfaces that do not bend, and absorption over its length, which may be infinite.
 Passage transmittance(const Scene& scene, const Segment& segment);
 
-/// The scattering at an interaction toward the unit direction wo, for a path whose throughput is `carried`.
-Shading shade(const Scene& scene, const Interaction& at, const Vec3f& wo, const Rgb& carried = {1, 1, 1});
+/// The scattering at an interaction toward the unit direction wo, for a path whose throughput is
+/// `throughput`.
+Shading shade(const Scene& scene, const Interaction& at, const Vec3f& wo, const Rgb& throughput = {1, 1, 1});
 
 }  // namespace vernier

@@ -14,8 +14,8 @@ struct ShadingSample {
   bool is_delta, is_transmitted, is_straight, is_diffuse;
 };
 
-/// A surface as light meets it from wo: the BSDF in its shading frame, spoken to in world directions.
-/// Transport between sides that shading and geometric normal disagree about is nought, so that interpolated
+/// A surface as light meets it from wo: the BSDF in its shading frame, evaluated in world space.
+/// Transport between sides that shading and geometric normal disagree about is zero, so that interpolated
 /// normals let no light through closed geometry.
 class Shading {
  public:

@@ -26,7 +26,7 @@ struct SurfacePoint {
   /// Ray leaving the surface along w (world, any length), free of self-intersection.
   Ray spawn(const Vec3f& w) const {
     Ray ray{offset_ray_origin(position, error, ng, w), 0, w};
-    ray.leaves = triangle();
+    ray.origin_triangle = triangle();
     ray.time = time;
     return ray;
   }
@@ -39,7 +39,7 @@ struct SurfacePoint {
     Ray ray = spawn(rough);
     ray.direction = offset_ray_origin(target, target_error, target_normal, -rough) - ray.origin;
     ray.t_max = 1;
-    ray.reaches = reached;
+    ray.target_triangle = reached;
     return ray;
   }
 };

@@ -83,7 +83,7 @@ ExitCode run_bench_calibration(const CalibrationFlags& flags, const Program& pro
       place_camera(chosen, flags.render.camera, scene.geometry(),
                    bench_aspect(flags.render, given ? &given->picture : nullptr), log);
   RenderSettings options = bench_options(flags.render, view, given ? &given->picture : nullptr);
-  surround(scene, surroundings, view, options, log);
+  set_environment(scene, surroundings, view, options, log);
   log.add(scene.notices());
   options.limits.spp = flags.spp;
   if (!flags.render.error.empty()) {

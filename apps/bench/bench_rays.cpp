@@ -149,7 +149,7 @@ ExitCode run_bench_rays(const BenchRaysFlags& flags, const Program& program) {
   const CameraDescription view = place_camera(chosen, flags.camera, scene.geometry(), 0, log);
   RenderSettings shape;
   fill_in_size(shape, view);
-  surround(scene, std::nullopt, view, shape, log);
+  set_environment(scene, std::nullopt, view, shape, log);
 
   constexpr int max_bounces = 4;
   const PathRays rays = record_path_rays(scene, view, static_cast<size_t>(flags.paths), max_bounces);

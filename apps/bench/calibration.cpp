@@ -33,9 +33,9 @@ Json ratio(double a, double b) { return b > 0 ? Json(a / b) : Json(nullptr); }
 
 /// What a run is compared with.
 struct Truth {
-  vernier::Image value;
-  vernier::Image variance;  ///< of each value
-  vernier::Image scale;     ///< what errors are relative to
+  Image value;
+  Image variance;  ///< of each value
+  Image scale;     ///< what errors are relative to
 };
 
 Truth truth_by(const Reference& reference) {
@@ -61,7 +61,7 @@ class MeanOfOthers {
   }
 
   /// Of all: light that one run alone has found would else be relative to none.
-  const vernier::Image& mean() const { return mean_; }
+  const Image& mean() const { return mean_; }
 
   Truth without(const CalibrationRun& run) const {
     Truth truth{mean_, mean_, mean_};
@@ -78,7 +78,7 @@ class MeanOfOthers {
  private:
   double count_;
   std::vector<double> sums_, squares_;
-  vernier::Image mean_;
+  Image mean_;
 };
 
 /// Sums of squared errors relative to r^2 + 0.01.
@@ -91,13 +91,13 @@ using Deciles = std::array<Decile, 10>;
 /// Adds up runs.
 class Calibration {
  public:
-  explicit Calibration(const vernier::Image& picture) : decile_of_pixel_(deciles_by_luminance(picture)) {}
+  explicit Calibration(const Image& picture) : decile_of_pixel_(deciles_by_luminance(picture)) {}
 
   void add(const CalibrationRun& run, const Truth& truth);
   Json json(double asked) const;
 
  private:
-  struct Image {
+  struct ImageFigures {
     double estimated, low, high, truth, samples_per_pixel;
   };
   Json deciles_json() const;
@@ -106,7 +106,7 @@ class Calibration {
   std::vector<Deciles> deciles_;          ///< of each run
   std::array<size_t, nominal_coverages.size()> covered_{};
   size_t values_ = 0, pixels_ = 0, flagged_ = 0;
-  std::vector<Image> images_;
+  std::vector<ImageFigures> images_;
 };
 
 void Calibration::add(const CalibrationRun& run, const Truth& truth) {
@@ -174,7 +174,7 @@ Json Calibration::json(double asked) const {
   std::vector<double> estimated, truths, ratios, samples;
   size_t inside = 0, above_estimate = 0, above_asked = 0;
   double estimated_squares = 0, true_squares = 0;
-  for (const Image& image : images_) {
+  for (const ImageFigures& image : images_) {
     estimated.push_back(image.estimated);
     truths.push_back(image.truth);
     ratios.push_back(image.estimated / image.truth);

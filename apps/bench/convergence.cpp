@@ -245,7 +245,7 @@ SceneConvergence measure_convergence(const ConvergencePlan& plan, size_t index, 
       place_camera(chosen, plan.render.camera, scenes.front()->geometry(),
                    bench_aspect(plan.render, given ? &given->picture : nullptr), log);
   RenderSettings options = bench_options(plan.render, view, given ? &given->picture : nullptr);
-  for (const auto& scene : scenes) surround(*scene, surroundings, view, options, log);
+  for (const auto& scene : scenes) set_environment(*scene, surroundings, view, options, log);
   log.add(scenes.front()->notices());
   const Camera camera(view, options.width, options.height);
   if (!given) fmt::print(stderr, "{}: reference of {} samples a pixel\n", file, plan.reference_spp);

@@ -139,10 +139,10 @@ void bind_built(py::module_& module) {
       .def_property_readonly("notices", [](const BuiltScene& built) { return to_list(built.notices); })
       .def_property_readonly("bounds", corners)
       .def(
-          "surround",
+          "set_environment",
           [](BuiltScene& built, const std::shared_ptr<EnvironmentDescription>& environment) {
             const py::gil_scoped_release unlocked;
-            surround(*built.scene, environment);
+            set_environment(*built.scene, environment);
           },
           py::arg("environment").none(true))
       .def(

@@ -62,7 +62,7 @@ const char* name_of(StopReason reason) {
 /// A RenderSession on a number of threads of its own.
 class Session {
  public:
-  /// `threads` 0: all of the machine's.
+  /// `threads` 0: as many as the machine has.
   Session(const std::shared_ptr<BuiltScene>& built, const std::string& settings, int threads)
       : arena_(threads > 0 ? threads : tbb::task_arena::automatic),
         session_(built->scene, RenderSettings::from_json(settings)) {}

@@ -70,7 +70,8 @@ std::optional<Surroundings> LiveScene::read(const SurroundingsFlags& flags) {
 }
 
 /// What depends on the view is chosen anew for each, as a render of that view alone would.
-void LiveScene::surround(const RenderRequest& request, const RenderSettings& settings, NoticeLog& log) {
+void LiveScene::set_environment(const RenderRequest& request, const RenderSettings& settings,
+                                NoticeLog& log) {
   if (!shows_light(request.flags)) return;
   const SurroundingsFlags& flags = request.flags.surroundings;
   const auto asked = read(flags);
@@ -89,12 +90,12 @@ void LiveScene::surround(const RenderRequest& request, const RenderSettings& set
   NoticeLog own(true);
   const std::unique_lock lock(mutex_);
   if (asked) {
-    built_.scene->surround(nullptr);
+    built_.scene->set_environment(nullptr);
   } else if (!has_own_surroundings_) {
-    built_.scene->surround(built_.environment);
+    built_.scene->set_environment(built_.environment);
   }
   const bool had_own = has_own_surroundings_;
-  surroundings_ = apps::surround(*built_.scene, asked, settings.camera, settings, own);
+  surroundings_ = apps::set_environment(*built_.scene, asked, settings.camera, settings, own);
   surroundings_notices_ = own.notices();
   log.add(surroundings_notices_);
   has_own_surroundings_ = !asked && !surroundings_.environment;
@@ -111,7 +112,7 @@ RenderSettings LiveScene::prepare(const RenderRequest& request, NoticeLog& log) 
   fill_in_size(settings, settings.camera);
   fit_lens(settings, flags.lens, *built_.scene, log);
   check_picture_size(settings, memory_use(request));
-  surround(request, settings, log);
+  set_environment(request, settings, log);
   const std::unique_lock lock(mutex_);
   settings_ = settings;
   return settings;

@@ -61,7 +61,7 @@ class LiveScene {
   };
 
   void build(const RenderRequest& request, NoticeLog& log);
-  void surround(const RenderRequest& request, const RenderSettings& settings, NoticeLog& log);
+  void set_environment(const RenderRequest& request, const RenderSettings& settings, NoticeLog& log);
   /// Those asked for, their picture read once.
   std::optional<Surroundings> read(const SurroundingsFlags& flags);
 

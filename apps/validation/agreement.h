@@ -11,14 +11,14 @@ namespace vernier::validation {
 /// Two accelerators on the same rays.
 struct Disagreements {
   uint64_t rays = 0;
-  uint64_t excused =
+  uint64_t within_rounding =
       0;  ///< the ray passes a boundary within rounding, or two surfaces meet within the error of t
-  uint64_t unexcused = 0;  ///< somebody is wrong
+  uint64_t real = 0;  ///< one of the two is wrong
 };
 
 /// closest() and occluded() of both on random rays through the soup, every fourth aimed at an edge or vertex.
 /// Instances must lie in world space.
-Disagreements compare(const Accelerator& a, const Accelerator& b, const Soup& soup, uint64_t rays,
+Disagreements compare(const Accelerator& a, const Accelerator& b, const TriangleSoup& soup, uint64_t rays,
                       uint64_t seed);
 
 /// Largest errors met, in units of the bounds of ExactHit: above 1 a result is worse than float arithmetic

@@ -26,14 +26,14 @@ struct Count {
 
 using BuildAccelerator = std::unique_ptr<Accelerator> (*)(const Geometry&);
 
-/// Adds up count(dice, n), a Count of n trials, over portions of the trials with dice of their own, in
+/// Adds up count(rng, n), a Count of n trials, over portions of the trials with rng of their own, in
 /// parallel: the same sum for any number of threads.
 template <typename CountPortion>
 Count count_portions(uint64_t trials, uint64_t portion, uint64_t seed, const CountPortion& count) {
   std::atomic<uint64_t> events = 0, made = 0;
   parallel_for((trials + portion - 1) / portion, [&](size_t stream) {
-    Dice dice(seed, stream);
-    const Count part = count(dice, std::min(portion, trials - stream * portion));
+    Rng rng(seed, stream);
+    const Count part = count(rng, std::min(portion, trials - stream * portion));
     events += part.events;
     made += part.trials;
   });

@@ -16,7 +16,7 @@ Vec3f scaled(const Vec3f& v, int exponent) {
   return {std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
 }
 
-void add_unit_box(Soup& soup) {
+void add_unit_box(TriangleSoup& soup) {
   std::vector<Vec3f> corners(8);
   for (unsigned i = 0; i < 8; ++i) corners[i] = {float(i & 1), float(i >> 1 & 1), float(i >> 2 & 1)};
   soup.add(corners, {{0, 2, 1},
@@ -36,12 +36,12 @@ void add_unit_box(Soup& soup) {
 }  // namespace
 
 Count changed_by_scaling(BuildAccelerator build, uint64_t rays, uint64_t seed) {
-  return count_portions(rays, rays_a_scene, seed, [&](Dice& dice, uint64_t count) {
-    Soup plain, large;
-    add_random_triangles(plain, dice, 60, .5f);
+  return count_portions(rays, rays_a_scene, seed, [&](Rng& rng, uint64_t count) {
+    TriangleSoup plain, large;
+    add_random_triangles(plain, rng, 60, .5f);
     add_waves(plain, 4);
     int exponent = 0;
-    while (exponent == 0) exponent = static_cast<int>(dice.below(49)) - 24;
+    while (exponent == 0) exponent = static_cast<int>(rng.below(49)) - 24;
     for (const GeometryMesh& mesh : plain.geometry().meshes) {
       std::vector<Vec3f> positions;
       for (const Vec3f& p : mesh.positions) positions.push_back(scaled(p, exponent));
@@ -51,8 +51,8 @@ Count changed_by_scaling(BuildAccelerator build, uint64_t rays, uint64_t seed) {
     Count changed{0, count};
     for (uint64_t i = 0; i < count; ++i) {
       Ray ray;
-      ray.origin = dice.in_cube(1.5f);
-      ray.direction = dice.direction();
+      ray.origin = rng.in_cube(1.5f);
+      ray.direction = rng.direction();
       Ray large_ray = ray;
       large_ray.origin = scaled(ray.origin, exponent);
       auto hit = a->closest(ray);
@@ -64,7 +64,7 @@ Count changed_by_scaling(BuildAccelerator build, uint64_t rays, uint64_t seed) {
 }
 
 Count changed_by_signed_zeros(BuildAccelerator build) {
-  Soup soup;
+  TriangleSoup soup;
   add_unit_box(soup);
   const auto accelerator = build(soup.geometry());
   constexpr float places[] = {-1, 0, .5f, 1, 2};
@@ -89,18 +89,18 @@ Count changed_by_signed_zeros(BuildAccelerator build) {
 }
 
 Count changed_by_rebuild(BuildAccelerator build, uint64_t rays, uint64_t seed) {
-  Soup soup;
+  TriangleSoup soup;
   for (int i = 0; i < 3; ++i) {
-    Dice same(seed, ~uint64_t{0});
+    Rng same(seed, ~uint64_t{0});
     add_random_triangles(soup, same, 200, .4f);
   }
   const auto first = build(soup.geometry()), second = build(soup.geometry());
-  return count_portions(rays, rays_a_scene, seed, [&](Dice& dice, uint64_t count) {
+  return count_portions(rays, rays_a_scene, seed, [&](Rng& rng, uint64_t count) {
     Count changed{0, count};
     for (uint64_t i = 0; i < count; ++i) {
       Ray ray;
-      ray.origin = dice.in_cube(2);
-      ray.direction = dice.direction();
+      ray.origin = rng.in_cube(2);
+      ray.direction = rng.direction();
       changed.events += !same_bits(first->closest(ray), second->closest(ray));
     }
     return changed;

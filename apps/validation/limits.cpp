@@ -41,7 +41,7 @@ class FlushDenormals {
 };
 
 bool is_hit_at_size(BuildAccelerator build, float size, bool flush_denormals) {
-  Soup soup;
+  TriangleSoup soup;
   soup.add({{0, 0, 0}, {size, 0, 0}, {0, size, 0}}, {{0, 1, 2}});
   const auto accelerator = build(soup.geometry());
   const FlushDenormals flush(flush_denormals);
@@ -54,21 +54,21 @@ bool is_hit_at_size(BuildAccelerator build, float size, bool flush_denormals) {
 }
 
 /// Which of the components a ray has that makes it invalid is random.
-Ray invalid_ray(Dice& dice) {
+Ray invalid_ray(Rng& rng) {
   constexpr float bad[] = {nan, infinity, -infinity};
   Ray ray;
-  ray.origin = dice.in_cube(1);
-  ray.direction = dice.direction();
-  const uint32_t what = dice.below(7);
+  ray.origin = rng.in_cube(1);
+  ray.direction = rng.direction();
+  const uint32_t what = rng.below(7);
   if (what == 6)
-    ray.direction = {0, dice.below(2) ? 0.f : -0.f, 0};
+    ray.direction = {0, rng.below(2) ? 0.f : -0.f, 0};
   else
-    (what < 3 ? ray.origin : ray.direction)[static_cast<int>(what % 3)] = bad[dice.below(3)];
+    (what < 3 ? ray.origin : ray.direction)[static_cast<int>(what % 3)] = bad[rng.below(3)];
   return ray;
 }
 
 /// Triangles none of which can be hit, and one in the plane y = 2 that can.
-void add_degenerate_triangles(Soup& soup, Dice& dice) {
+void add_degenerate_triangles(TriangleSoup& soup, Rng& rng) {
   std::vector<Vec3f> positions{{-1, 2, -1}, {1, 2, -1}, {0, 2, 1}};
   std::vector<Triangle> triangles{{0, 1, 2}};
   const auto add = [&](const Vec3f& a, const Vec3f& b, const Vec3f& c) {
@@ -77,7 +77,7 @@ void add_degenerate_triangles(Soup& soup, Dice& dice) {
     triangles.push_back({first, first + 1, first + 2});
   };
   for (int i = 0; i < 20; ++i) {
-    const Vec3f a = dice.in_cube(1), b = dice.in_cube(1);
+    const Vec3f a = rng.in_cube(1), b = rng.in_cube(1);
     add(a, a, b);
     add(a, a, a);
     add(a, {nan, 0, 0}, b);
@@ -102,23 +102,23 @@ SizeRange sizes_hit(BuildAccelerator build, bool flush_denormals) {
 }
 
 Count phantom_hits(BuildAccelerator build, uint64_t rays, uint64_t seed) {
-  Soup soup;
-  Dice shape(seed, ~uint64_t{0});
+  TriangleSoup soup;
+  Rng shape(seed, ~uint64_t{0});
   add_degenerate_triangles(soup, shape);
   const auto accelerator = build(soup.geometry());
-  return count_portions(rays, rays_a_portion, seed, [&](Dice& dice, uint64_t count) {
+  return count_portions(rays, rays_a_portion, seed, [&](Rng& rng, uint64_t count) {
     Count phantoms{0, count};
     for (uint64_t i = 0; i < count; ++i) {
-      Ray ray = invalid_ray(dice);
-      const uint32_t kind = dice.below(3);
+      Ray ray = invalid_ray(rng);
+      const uint32_t kind = rng.below(3);
       if (kind == 0) {  // at a vertex of the degenerate triangles; the sound one is behind the origin
         const auto& positions = soup.geometry().meshes[0].positions;
-        ray.origin = dice.in_cube(1.5f);
-        ray.direction = positions[3 + dice.below(static_cast<uint32_t>(positions.size()) - 3)] - ray.origin;
+        ray.origin = rng.in_cube(1.5f);
+        ray.direction = positions[3 + rng.below(static_cast<uint32_t>(positions.size()) - 3)] - ray.origin;
         if (ray.direction.y > 0) continue;
       } else if (kind == 1) {  // in the plane of the sound one
-        ray.origin = {-3, 2, dice.uniform(-1, 1)};
-        ray.direction = {1, 0, dice.uniform(-.5f, .5f)};
+        ray.origin = {-3, 2, rng.uniform(-1, 1)};
+        ray.direction = {1, 0, rng.uniform(-.5f, .5f)};
       }
       phantoms.events += accelerator->closest(ray).has_value() || accelerator->occluded(ray);
     }
@@ -127,16 +127,16 @@ Count phantom_hits(BuildAccelerator build, uint64_t rays, uint64_t seed) {
 }
 
 Count interval_errors(BuildAccelerator build, uint64_t rays, uint64_t seed) {
-  return count_portions(rays, rays_a_portion, seed, [&](Dice& dice, uint64_t count) {
-    Soup soup;
-    add_random_triangles(soup, dice, 1, 1);
+  return count_portions(rays, rays_a_portion, seed, [&](Rng& rng, uint64_t count) {
+    TriangleSoup soup;
+    add_random_triangles(soup, rng, 1, 1);
     const auto accelerator = build(soup.geometry());
     const Corners c = soup.corners(0, 0);
     std::vector<RawHit> hits;
     Count errors{0, count};
     for (uint64_t i = 0; i < count; ++i) {
       Ray ray;
-      ray.origin = dice.in_cube(3);
+      ray.origin = rng.in_cube(3);
       ray.direction = (c[0] + c[1] + c[2]) / 3 - ray.origin;
       const auto hit = accelerator->closest(ray);
       if (!hit) continue;  // grazing
@@ -164,21 +164,21 @@ Count interval_errors(BuildAccelerator build, uint64_t rays, uint64_t seed) {
 }
 
 double invalid_ray_cost(BuildAccelerator build, uint64_t rays, uint64_t seed) {
-  Soup soup;
+  TriangleSoup soup;
   add_waves(soup, 100);
   const auto accelerator = build(soup.geometry());
   const auto seconds = [&](const auto& make_ray) {
-    Dice dice(seed, 0);
+    Rng rng(seed, 0);
     std::vector<Ray> all;
-    for (uint64_t i = 0; i < rays; ++i) all.push_back(make_ray(dice));
+    for (uint64_t i = 0; i < rays; ++i) all.push_back(make_ray(rng));
     const auto start = std::chrono::steady_clock::now();
     for (const Ray& ray : all) accelerator->closest(ray);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
-  const double valid = seconds([](Dice& dice) {
+  const double valid = seconds([](Rng& rng) {
     Ray ray;
-    ray.origin = dice.in_cube(1);
-    ray.direction = dice.direction();
+    ray.origin = rng.in_cube(1);
+    ray.direction = rng.direction();
     return ray;
   });
   return seconds(invalid_ray) / valid;

@@ -7,14 +7,14 @@
 
 namespace vernier::validation {
 
-Vec3f Dice::direction() {
+Vec3f Rng::direction() {
   while (true) {
     const Vec3f v = in_cube(1);
     if (const float l2 = length_squared(v); l2 > 0.01f && l2 < 1) return normalize(v);
   }
 }
 
-uint32_t Soup::add_mesh(std::vector<Vec3f> positions, std::vector<Triangle> triangles) {
+uint32_t TriangleSoup::add_mesh(std::vector<Vec3f> positions, std::vector<Triangle> triangles) {
   const size_t count = positions.size();
   positions.resize(count + 2);  // GeometryMesh asks for readable bytes past the end
   positions_.push_back(std::move(positions));
@@ -23,12 +23,13 @@ uint32_t Soup::add_mesh(std::vector<Vec3f> positions, std::vector<Triangle> tria
   return static_cast<uint32_t>(geometry_.meshes.size() - 1);
 }
 
-uint32_t Soup::add_instance(uint32_t mesh, const Transform& to_world, bool filtered) {
+uint32_t TriangleSoup::add_instance(uint32_t mesh, const Transform& to_world, bool filtered) {
   geometry_.instances.push_back({mesh, to_world, filtered});
   return static_cast<uint32_t>(geometry_.instances.size() - 1);
 }
 
-void Soup::add_moving(const std::vector<std::vector<Vec3f>>& moments, std::vector<Triangle> triangles) {
+void TriangleSoup::add_moving(const std::vector<std::vector<Vec3f>>& moments,
+                              std::vector<Triangle> triangles) {
   const uint32_t mesh = add_mesh(moments[0], std::move(triangles));
   for (const auto& positions : moments) {
     positions_.push_back(positions);
@@ -38,7 +39,7 @@ void Soup::add_moving(const std::vector<std::vector<Vec3f>>& moments, std::vecto
   add_instance(mesh);
 }
 
-Corners Soup::corners(uint32_t instance, uint32_t primitive) const {
+Corners TriangleSoup::corners(uint32_t instance, uint32_t primitive) const {
   const GeometryInstance& placed = geometry_.instances[instance];
   const GeometryMesh& mesh = geometry_.meshes[placed.mesh];
   const Triangle& triangle = mesh.triangles[primitive];
@@ -52,41 +53,40 @@ Corners Soup::corners(uint32_t instance, uint32_t primitive) const {
 
 namespace {
 
-void rotate_corners(Triangle& triangle, Dice& dice) {
-  std::rotate(triangle.begin(), triangle.begin() + dice.below(3), triangle.end());
+void rotate_corners(Triangle& triangle, Rng& rng) {
+  std::rotate(triangle.begin(), triangle.begin() + rng.below(3), triangle.end());
 }
 
 }  // namespace
 
-void add_folded_quad(Soup& soup, Dice& dice, float size, const Vec3f& center) {
-  const Frame frame = Frame::from_normal(dice.direction());
+void add_folded_quad(TriangleSoup& soup, Rng& rng, float size, const Vec3f& center) {
+  const Frame frame = Frame::from_normal(rng.direction());
   const auto place = [&](float x, float y, float z) {
-    return center +
-           size * (frame.x * (x + dice.uniform(-.2f, .2f)) + frame.y * (y + dice.uniform(-.2f, .2f)) +
-                   frame.z * (z + dice.uniform(-.1f, .1f)));
+    return center + size * (frame.x * (x + rng.uniform(-.2f, .2f)) + frame.y * (y + rng.uniform(-.2f, .2f)) +
+                            frame.z * (z + rng.uniform(-.1f, .1f)));
   };
   std::vector<Vec3f> positions{place(0, 0, 0), place(1, 0, 0), place(0, 1, 0), place(1, 1, 0)};
   std::vector<Triangle> triangles{{0, 1, 2}, {2, 1, 3}};
-  for (Triangle& triangle : triangles) rotate_corners(triangle, dice);
+  for (Triangle& triangle : triangles) rotate_corners(triangle, rng);
   soup.add(std::move(positions), std::move(triangles));
 }
 
-void add_fan(Soup& soup, Dice& dice, float size, const Vec3f& center) {
-  const Frame frame = Frame::from_normal(dice.direction());
+void add_fan(TriangleSoup& soup, Rng& rng, float size, const Vec3f& center) {
+  const Frame frame = Frame::from_normal(rng.direction());
   std::vector<Vec3f> positions{center};
   std::vector<Triangle> triangles;
   for (uint32_t i = 0; i < 6; ++i) {
-    const float angle = (float(i) + dice.uniform(-.3f, .3f)) * (2 * pi / 6),
-                radius = size * dice.uniform(.5f, 1);
+    const float angle = (float(i) + rng.uniform(-.3f, .3f)) * (2 * pi / 6),
+                radius = size * rng.uniform(.5f, 1);
     positions.push_back(center + frame.x * (radius * std::cos(angle)) + frame.y * (radius * std::sin(angle)) +
-                        frame.z * (size * dice.uniform(-.1f, .1f)));
+                        frame.z * (size * rng.uniform(-.1f, .1f)));
     triangles.push_back({0, i + 1, (i + 1) % 6 + 1});
-    rotate_corners(triangles.back(), dice);
+    rotate_corners(triangles.back(), rng);
   }
   soup.add(std::move(positions), std::move(triangles));
 }
 
-void add_blob(Soup& soup, Dice& dice, unsigned levels, float radius, const Vec3f& center) {
+void add_blob(TriangleSoup& soup, Rng& rng, unsigned levels, float radius, const Vec3f& center) {
   const float a = 0.525731112f, b = 0.850650808f;  // icosahedron
   std::vector<Vec3f> directions{{-a, b, 0},  {a, b, 0},  {-a, -b, 0}, {a, -b, 0}, {0, -a, b},  {0, a, b},
                                 {0, -a, -b}, {0, a, -b}, {b, 0, -a},  {b, 0, a},  {-b, 0, -a}, {-b, 0, a}};
@@ -112,12 +112,12 @@ void add_blob(Soup& soup, Dice& dice, unsigned levels, float radius, const Vec3f
   std::vector<Vec3f> positions;
   positions.reserve(directions.size());
   for (const Vec3f& direction : directions)
-    positions.push_back(center + direction * (radius * dice.uniform(.7f, 1)));
-  for (Triangle& triangle : triangles) rotate_corners(triangle, dice);
+    positions.push_back(center + direction * (radius * rng.uniform(.7f, 1)));
+  for (Triangle& triangle : triangles) rotate_corners(triangle, rng);
   soup.add(std::move(positions), std::move(triangles));
 }
 
-void add_waves(Soup& soup, unsigned n) {
+void add_waves(TriangleSoup& soup, unsigned n) {
   std::vector<Vec3f> positions;
   std::vector<Triangle> triangles;
   for (unsigned j = 0; j <= n; ++j)
@@ -133,20 +133,20 @@ void add_waves(Soup& soup, unsigned n) {
   soup.add(std::move(positions), std::move(triangles));
 }
 
-void add_random_triangles(Soup& soup, Dice& dice, uint32_t count, float size) {
+void add_random_triangles(TriangleSoup& soup, Rng& rng, uint32_t count, float size) {
   std::vector<Vec3f> positions;
   std::vector<Triangle> triangles;
   for (uint32_t i = 0; i < count; ++i) {
-    const Vec3f center = dice.in_cube(1);
-    for (int k = 0; k < 3; ++k) positions.push_back(center + dice.in_cube(size));
+    const Vec3f center = rng.in_cube(1);
+    for (int k = 0; k < 3; ++k) positions.push_back(center + rng.in_cube(size));
     triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
   soup.add(std::move(positions), std::move(triangles));
 }
 
-Transform random_placement(Dice& dice, const Vec3f& scale, const Vec3f& origin) {
-  const Vec3f axis = dice.direction();
-  const Frame frame = Frame::from_normal_tangent(axis, dice.direction());
+Transform random_placement(Rng& rng, const Vec3f& scale, const Vec3f& origin) {
+  const Vec3f axis = rng.direction();
+  const Frame frame = Frame::from_normal_tangent(axis, rng.direction());
   return {frame.x * scale.x, frame.y * scale.y, frame.z * scale.z, origin};
 }
 

@@ -14,9 +14,9 @@
 namespace vernier::validation {
 
 /// Random numbers that are the same on every platform.
-class Dice {
+class Rng {
  public:
-  Dice(uint64_t seed, uint64_t stream) : engine_(seed * 0x9E3779B97F4A7C15u + stream) {}
+  Rng(uint64_t seed, uint64_t stream) : engine_(seed * 0x9E3779B97F4A7C15u + stream) {}
 
   uint32_t below(uint32_t n) { return static_cast<uint32_t>(engine_() % n); }
   float uniform(float low, float high) { return low + (high - low) * (float(engine_() >> 40) * 0x1p-24f); }
@@ -33,11 +33,11 @@ class Dice {
 };
 
 /// Meshes and instances that own their arrays.
-class Soup {
+class TriangleSoup {
  public:
-  Soup() = default;
-  Soup(const Soup&) = delete;
-  Soup& operator=(const Soup&) = delete;
+  TriangleSoup() = default;
+  TriangleSoup(const TriangleSoup&) = delete;
+  TriangleSoup& operator=(const TriangleSoup&) = delete;
 
   uint32_t add_mesh(std::vector<Vec3f> positions, std::vector<Triangle> triangles);
   /// Returns the instance's index.
@@ -65,22 +65,22 @@ class Soup {
 
 /// Two triangles 0 1 2 and 2 1 3 that share the edge 1 2, slightly folded, in no particular place or
 /// orientation, with their vertices in a random cyclic order; size about `size`, near `center`.
-void add_folded_quad(Soup& soup, Dice& dice, float size, const Vec3f& center);
+void add_folded_quad(TriangleSoup& soup, Rng& rng, float size, const Vec3f& center);
 
 /// Six triangles around vertex 0, slightly folded.
-void add_fan(Soup& soup, Dice& dice, float size, const Vec3f& center);
+void add_fan(TriangleSoup& soup, Rng& rng, float size, const Vec3f& center);
 
 /// A closed star-shaped surface about `center` of 20 * 4^levels triangles with radii in [0.7, 1] times
 /// `radius`, facing outward: rays from the center must hit it.
-void add_blob(Soup& soup, Dice& dice, unsigned levels, float radius, const Vec3f& center);
+void add_blob(TriangleSoup& soup, Rng& rng, unsigned levels, float radius, const Vec3f& center);
 
 /// n x n squares of two triangles each, wavy, over [-1, 1]^2.
-void add_waves(Soup& soup, unsigned n);
+void add_waves(TriangleSoup& soup, unsigned n);
 
 /// `count` triangles with sides of about `size` in the cube [-1, 1]^3.
-void add_random_triangles(Soup& soup, Dice& dice, uint32_t count, float size);
+void add_random_triangles(TriangleSoup& soup, Rng& rng, uint32_t count, float size);
 
 /// Rotation by a random angle about a random axis, stretched by `scale` before, moved by `origin`.
-Transform random_placement(Dice& dice, const Vec3f& scale, const Vec3f& origin);
+Transform random_placement(Rng& rng, const Vec3f& scale, const Vec3f& origin);
 
 }  // namespace vernier::validation

@@ -35,21 +35,21 @@ Ray spawned(const SurfacePoint& point, const Vec3f& direction, Spawn spawn) {
 }
 
 /// Unit direction at cosine `cosine` to the normal.
-Vec3f leaving(const Vec3f& normal, float cosine, Dice& dice) {
+Vec3f leaving(const Vec3f& normal, float cosine, Rng& rng) {
   const Frame frame = Frame::from_normal(normal);
-  const float angle = dice.uniform(0, 2 * pi), sine = safe_sqrt(1 - cosine * cosine);
+  const float angle = rng.uniform(0, 2 * pi), sine = safe_sqrt(1 - cosine * cosine);
   return frame.to_world({sine * std::cos(angle), sine * std::sin(angle), cosine});
 }
 
 /// A ray at a random point inside triangle 0 (or its copy) from a few times its size away; empty when that is
 /// not what it hits.
 std::optional<SurfacePoint> point_on(const SceneGeometry& scene, const Accelerator& accelerator, float scale,
-                                     Dice& dice) {
+                                     Rng& rng) {
   const auto c = scene.triangle(0, 0);
-  const float u = dice.uniform(.05f, .9f), v = dice.uniform(.05f, .95f - u);
+  const float u = rng.uniform(.05f, .9f), v = rng.uniform(.05f, .95f - u);
   const Vec3f target = c[0] + (c[1] - c[0]) * u + (c[2] - c[0]) * v;
   Ray ray;
-  ray.origin = target + dice.direction() * (scale * dice.magnitude(.1f, 30));
+  ray.origin = target + rng.direction() * (scale * rng.magnitude(.1f, 30));
   ray.direction = normalize(target - ray.origin);
   const auto hit = accelerator.closest(ray);
   if (!hit || hit->instance != 0) return {};
@@ -59,29 +59,29 @@ std::optional<SurfacePoint> point_on(const SceneGeometry& scene, const Accelerat
 }  // namespace
 
 Count self_hits(BuildAccelerator build, const SpawnCase& spawn_case, uint64_t rays, uint64_t seed) {
-  return count_portions(rays, rays_a_scene, seed, [&](Dice& dice, uint64_t count) {
+  return count_portions(rays, rays_a_scene, seed, [&](Rng& rng, uint64_t count) {
     const float scale = spawn_case.scale;
-    const Vec3f center = dice.direction() * (spawn_case.offset * scale);
-    const Vec3f in_mesh = spawn_case.instanced ? dice.in_cube(scale) : center;
+    const Vec3f center = rng.direction() * (spawn_case.offset * scale);
+    const Vec3f in_mesh = spawn_case.instanced ? rng.in_cube(scale) : center;
     std::vector<Vec3f> positions(3);
-    for (Vec3f& p : positions) p = in_mesh + dice.in_cube(scale);
+    for (Vec3f& p : positions) p = in_mesh + rng.in_cube(scale);
     // A quarter lies in a coordinate plane, where points are known exactly and only the test rounds.
-    if (dice.below(4) == 0) {
-      const int axis = int(dice.below(3));
+    if (rng.below(4) == 0) {
+      const int axis = int(rng.below(3));
       for (Vec3f& p : positions) p[axis] = in_mesh[axis];
     }
-    const Vec3f stretch{1, dice.magnitude(.1f, 10), dice.magnitude(.1f, 10)};
-    const Transform to_world = spawn_case.instanced ? random_placement(dice, stretch, center) : Transform{};
+    const Vec3f stretch{1, rng.magnitude(.1f, 10), rng.magnitude(.1f, 10)};
+    const Transform to_world = spawn_case.instanced ? random_placement(rng, stretch, center) : Transform{};
     std::vector<Triangle> triangles(spawn_case.copied ? 2 : 1, Triangle{0, 1, 2});
     const SceneGeometry scene = make_scene(positions, std::move(triangles), to_world, spawn_case.instanced);
     const auto accelerator = build(scene.view());
     Count result;
     std::vector<RawHit> hits;
     for (uint64_t i = 0; i < count; ++i) {
-      const auto point = point_on(scene, *accelerator, scale, dice);
+      const auto point = point_on(scene, *accelerator, scale, rng);
       if (!point) continue;
-      const float cosine = dice.magnitude(1e-4f, 1) * (dice.below(2) ? 1.f : -1.f);
-      accelerator->all_hits(spawned(*point, leaving(point->ng, cosine, dice), spawn_case.spawn), hits);
+      const float cosine = rng.magnitude(1e-4f, 1) * (rng.below(2) ? 1.f : -1.f);
+      accelerator->all_hits(spawned(*point, leaving(point->ng, cosine, rng), spawn_case.spawn), hits);
       ++result.trials;
       result.events += std::any_of(hits.begin(), hits.end(), [](const RawHit& h) { return h.instance == 0; });
     }
@@ -91,8 +91,8 @@ Count self_hits(BuildAccelerator build, const SpawnCase& spawn_case, uint64_t ra
 
 Count missed_gaps(BuildAccelerator build, const SpawnCase& spawn_case, unsigned gap, uint64_t rays,
                   uint64_t seed) {
-  return count_portions(rays, rays_a_scene, seed, [&](Dice& dice, uint64_t count) {
-    const Vec3f center = dice.direction() * (spawn_case.offset * spawn_case.scale);
+  return count_portions(rays, rays_a_scene, seed, [&](Rng& rng, uint64_t count) {
+    const Vec3f center = rng.direction() * (spawn_case.offset * spawn_case.scale);
     // Coordinates in multiples of the ulp of the largest, so that the second sheet is moved exactly; sheets
     // many ulps wide, so that no ray leaves the gap at the side.
     const auto ulp_at = [](float x) { return std::nextafter(x, std::numeric_limits<float>::infinity()) - x; };
@@ -103,7 +103,7 @@ Count missed_gaps(BuildAccelerator build, const SpawnCase& spawn_case, unsigned 
     while (length(normal) < 0.1f * size * size) {  // nor slivers, for the same reason
       positions.clear();
       for (int i = 0; i < 3; ++i) {
-        Vec3f p = center + dice.in_cube(size);
+        Vec3f p = center + rng.in_cube(size);
         for (int axis = 0; axis < 3; ++axis) p[axis] = std::round(p[axis] / ulp) * ulp;
         positions.push_back(p);
       }
@@ -122,10 +122,10 @@ Count missed_gaps(BuildAccelerator build, const SpawnCase& spawn_case, unsigned 
     const auto accelerator = build(scene.view());
     Count result;
     for (uint64_t i = 0; i < count; ++i) {
-      const float u = dice.uniform(.2f, .5f), v = dice.uniform(.2f, .7f - u);
+      const float u = rng.uniform(.2f, .5f), v = rng.uniform(.2f, .7f - u);
       const SurfacePoint point = scene.surface_point(0, 0, {u, v});
       const float toward = normal[axis] > 0 ? 1.f : -1.f;
-      const Vec3f direction = leaving(point.ng * toward, dice.uniform(.1f, 1), dice);
+      const Vec3f direction = leaving(point.ng * toward, rng.uniform(.1f, 1), rng);
       ++result.trials;
       result.events += !accelerator->occluded(spawned(point, direction, spawn_case.spawn));
     }

@@ -12,7 +12,7 @@ namespace vernier::validation {
 
 struct Stress {
   std::string_view name;
-  void (*fill)(Soup&, uint32_t triangles);
+  void (*fill)(TriangleSoup&, uint32_t triangles);
   float size;          ///< half of the cube about the origin where its triangles are
   uint32_t triangles;  ///< enough to hurt
 };

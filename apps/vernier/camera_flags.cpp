@@ -66,7 +66,7 @@ void add_angle(CLI::App& command, const char* flag, std::optional<float>& angle,
 void add_camera_flags(CLI::App& command, CameraFlags& flags) {
   const std::string group = command.option_defaults()->get_group();
   command.option_defaults()->group("Camera");
-  command.add_option("--camera", flags.camera, "of the scene, by name or number, or all (the first)")
+  command.add_option("--camera", flags.camera, "camera of the scene, by name or number, or all (the first)")
       ->type_name("NAME|N|all");
   add_angle(command, "--azimuth", flags.azimuth,
             "see the whole scene from this far to the right of its front (30)");

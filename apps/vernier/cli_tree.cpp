@@ -34,7 +34,7 @@ const std::vector<std::string>& listed_values(const std::string& flag) {
       {"--filter", names_of(denoisers())},
       {"--env", names_of(built_in_environments())},
       {"--aov", names_of(layers())},
-      {"--show", {raycast_shows().begin(), raycast_shows().end()}},
+      {"--show", {raycast_outputs().begin(), raycast_outputs().end()}},
   };
   static const std::vector<std::string> none;
   const auto found = values.find(flag);

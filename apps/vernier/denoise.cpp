@@ -49,7 +49,7 @@ ExitCode run_denoise(const DenoiseFlags& flags, const std::string& command_line)
   require_alpha_fits(noisy, flags.output);
   const Denoised denoised = denoise(noisy, denoiser);
   LayeredImage picture = color_and_reliability(noisy);
-  put_into(picture, denoised);
+  replace_color(picture, denoised);
   Metadata& metadata = picture.metadata;
   for (const auto& [name, value] : denoised_metadata(denoiser, denoised.error)) metadata[name] = value;
   metadata["vernier:denoiseCommand"] = command_line;

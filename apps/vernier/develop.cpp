@@ -92,7 +92,7 @@ ExitCode run_develop(const DevelopFlags& flags, const std::string& command_line)
   } else if (denoiser) {
     const Denoised denoised = denoise(picture, *denoiser);
     for (const auto& [name, value] : denoised_metadata(*denoiser, denoised.error)) metadata[name] = value;
-    put_into(picture, denoised);
+    replace_color(picture, denoised);
     done = ", " + denoised_text(*denoiser, denoised.error);
   }
   picture = color_and_alpha(picture);

@@ -74,7 +74,7 @@ void register_scheduler(CLI::App& farm, Program& program, const Scheduler& sched
 void register_status(CLI::App& farm, Program& program) {
   CLI::App* command = farm.add_subcommand("status", "Say how far the parts of a farm are");
   auto folder = std::make_shared<std::string>();
-  command->add_option("FOLDER", *folder, "of the parts: out.parts for out.exr")->type_name("");
+  command->add_option("FOLDER", *folder, "folder of the parts: out.parts for out.exr")->type_name("");
   command->callback([&program, folder] {
     program.run = [folder] {
       if (folder->empty())

@@ -51,7 +51,8 @@ CLI::Validator whole_number(uint64_t least, uint64_t most) {
 }
 
 void add_threads_flag(CLI::App& command, unsigned& threads) {
-  command.add_option("-t,--threads,--nthreads", threads, "0: all of the machine's")
+  command
+      .add_option("-t,--threads,--nthreads", threads, "threads to render on; 0: as many as the machine has")
       ->transform(whole_number(0, 4096))
       ->type_name("N")
       ->capture_default_str();
@@ -65,15 +66,16 @@ void add_scene_flags(CLI::App& command, std::string& scene, ImportOptions& optio
 void add_import_flags(CLI::App& command, ImportOptions& options) {
   const std::string group = command.option_defaults()->get_group();
   command.option_defaults()->group("Scene");
-  command.add_option("--variant", options.variant, "of the materials, by name (KHR_materials_variants)")
+  command
+      .add_option("--variant", options.variant, "variant of the materials, by name (KHR_materials_variants)")
       ->type_name("NAME");
   command.add_option("--at", options.time, "seconds into an animation (at rest)")
       ->transform(real_number(-1e9, 1e9))
       ->type_name("SECONDS");
   command
-      .add_option(
-          "--animation", options.animation,
-          "that poses the scene, by name or number, or all (all if no two move the same, else the first)")
+      .add_option("--animation", options.animation,
+                  "animation that poses the scene, by name or number, or all (all if no two move the same, "
+                  "else the first)")
       ->type_name("NAME|N|all");
   command.add_flag("--allow-outside-files", options.allow_outside_files,
                    "read files that the scene refers to outside its folder");

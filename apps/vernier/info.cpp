@@ -114,7 +114,7 @@ Json default_render_json(Scene& scene, std::span<const CameraDescription> camera
   RenderSettings options;
   fill_in_size(options, view);
   return {{"camera", view.name},
-          {"surroundings", surround(scene, std::nullopt, view, options, unsaid).name},
+          {"surroundings", set_environment(scene, std::nullopt, view, options, unsaid).name},
           {"filter", filter_text(options.filter)}};
 }
 

@@ -90,18 +90,18 @@ std::vector<View> PosedScene::views(const RenderFlags& flags, const RunPlan& pla
   return views;
 }
 
-Surroundings PosedScene::surround(const RenderRequest& request, const RenderSettings& settings,
-                                  const View& view, NoticeLog& log) {
+Surroundings PosedScene::set_environment(const RenderRequest& request, const RenderSettings& settings,
+                                         const View& view, NoticeLog& log) {
   const std::optional<Surroundings>& asked = request.surroundings;
   if (surroundings_ && asked && !asked->turns_with_camera) return *surroundings_;
   const bool is_decided = !asked && view.side && decided_by_ == view.front.to_world;
   if (!is_decided) {
-    if (surroundings_ && surroundings_->environment) scene_->surround(own_);
-    surroundings_ = apps::surround(*scene_, asked, asked ? view.camera : view.front, settings, log);
+    if (surroundings_ && surroundings_->environment) scene_->set_environment(own_);
+    surroundings_ = apps::set_environment(*scene_, asked, asked ? view.camera : view.front, settings, log);
     decided_by_ = view.front.to_world;
   }
   if (!asked && view.side && surroundings_->environment)
-    scene_->surround(built_in_environment(surroundings_->name, view.camera));
+    scene_->set_environment(built_in_environment(surroundings_->name, view.camera));
   return *surroundings_;
 }
 

@@ -38,8 +38,8 @@ class PosedScene {
   std::vector<View> views(const RenderFlags& flags, const RunPlan& plan, NoticeLog& log) const;
   /// Puts the surroundings around it that a picture by this view needs, as if it were the only one, and says
   /// what they are. Whether a turntable needs a studio is told by its front, so that all of it has the same.
-  Surroundings surround(const RenderRequest& request, const RenderSettings& settings, const View& view,
-                        NoticeLog& log);
+  Surroundings set_environment(const RenderRequest& request, const RenderSettings& settings, const View& view,
+                               NoticeLog& log);
 
   const std::shared_ptr<Scene>& scene() const { return scene_; }
   /// What the report of each of its pictures begins with.

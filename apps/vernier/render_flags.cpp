@@ -32,12 +32,14 @@ void add_quality_flags(CLI::App& command, RenderFlags& flags) {
       ->type_name("TIME");
   command
       .add_option("--error", flags.error,
-                  "stop when the picture's relative RMSE is this and surely no tenth more: 1%, 0.01")
+                  "stop when the picture's relative RMSE is at most this, and the end of its interval at "
+                  "most a tenth more: 1%, 0.01")
       ->check(parsed_by(parse_fraction))
       ->type_name("ERROR");
   add_adaptive_flag(command, flags);
   command
-      .add_option("--size,--resolution", flags.size, "of the picture (the camera's shape, 1280 pixels long)")
+      .add_option("--size,--resolution", flags.size,
+                  "size of the picture (the camera's shape, 1280 pixels long)")
       ->check(parsed_by(parse_pixel_size))
       ->type_name("WxH");
   command.add_option("--crop", flags.crop, "render only this part")
@@ -47,7 +49,7 @@ void add_quality_flags(CLI::App& command, RenderFlags& flags) {
       .add_option("--filter", flags.filter, "what a pixel shows of its surroundings; 'help' lists filters")
       ->type_name("NAME[:WIDTH]")
       ->capture_default_str();
-  command.add_option("--seed", flags.seed, "of the random numbers")
+  command.add_option("--seed", flags.seed, "seed of the random numbers")
       ->transform(whole_number(0, std::numeric_limits<uint64_t>::max()))
       ->type_name("N")
       ->capture_default_str();
@@ -190,7 +192,7 @@ bool print_requested_list(const RenderFlags& flags) {
   } else if (flags.accelerator == "help" || flags.accelerator == "help-all") {
     print_accelerators(flags.accelerator == "help-all");
   } else if (flags.show == "help") {
-    for (const auto& name : raycast_shows()) fmt::print("{}\n", name);
+    for (const auto& name : raycast_outputs()) fmt::print("{}\n", name);
   } else if (flags.filter == "help") {
     print_filters();
   } else if (flags.layers == "help") {

@@ -36,7 +36,7 @@ std::optional<Denoised> denoise_if_asked(const RenderRequest& request, LayeredIm
                                          Metadata& metadata) {
   if (!request.denoiser) return std::nullopt;
   Denoised denoised = denoise(picture, *request.denoiser);
-  put_into(picture, denoised);
+  replace_color(picture, denoised);
   metadata.merge(denoised_metadata(*request.denoiser, denoised.error));
   return denoised;
 }
@@ -59,7 +59,7 @@ void prepare(const RenderRequest& request, PosedScene& posed, const View& view, 
   fill_in_size(settings, settings.camera);
   report.lens = fit_lens(settings, request.flags.camera.lens, *posed.scene(), log);
   check_picture_size(settings, memory_use(request));
-  if (shows_light(request.flags)) report.surroundings = posed.surround(request, settings, view, log);
+  if (shows_light(request.flags)) report.surroundings = posed.set_environment(request, settings, view, log);
   log.add(posed.scene()->notices());
   if (request.flags.import.strict) refuse_warnings(request.flags.scene, posed.scene()->notices());
 }

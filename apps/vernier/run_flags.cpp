@@ -68,7 +68,8 @@ void add_preview_flags(CLI::App& command, RunFlags& flags) {
                   "write the picture so far this often while rendering: 2s, 1m, never (2s on a terminal)")
       ->check(parsed_by(parse_interval))
       ->type_name("TIME");
-  command.add_option("--format", flags.format, "of the picture that -o - writes: png, jpg or exr (png)")
+  command
+      .add_option("--format", flags.format, "format of the picture that -o - writes: png, jpg or exr (png)")
       ->check([](const std::string& text) {
         static const std::array<std::string, 3> known{"png", "jpg", "exr"};
         if (std::find(known.begin(), known.end(), text) != known.end()) return std::string();

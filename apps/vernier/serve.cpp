@@ -57,7 +57,7 @@ FlagChoices choices(const RenderFlags& flags, const LiveScene& scene) {
           {"--variant", optional(scene.file().variants())},
           {"--animation", std::move(animations)},
           {"--integrator", names_of(integrators())},
-          {"--show", {raycast_shows().begin(), raycast_shows().end()}},
+          {"--show", {raycast_outputs().begin(), raycast_outputs().end()}},
           {"--denoise", optional(names_of(denoisers()))}};
 }
 
@@ -126,7 +126,7 @@ void register_serve(Program& program) {
   command->add_option("SCENE", render.run.scenes, "glTF 2.0 scene (.gltf, .glb)")
       ->type_name("")
       ->expected(0, 1);
-  command->add_option("--port", flags->port, "of the address; 0: any that is free")
+  command->add_option("--port", flags->port, "port of the address; 0: any that is free")
       ->transform(whole_number(0, 65535))
       ->type_name("N")
       ->capture_default_str();

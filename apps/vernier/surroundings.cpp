@@ -126,10 +126,10 @@ void replace_surroundings(SceneDescription& description, const std::optional<Sur
   description.environment = nullptr;
 }
 
-Surroundings surround(Scene& scene, const std::optional<Surroundings>& asked, const CameraDescription& view,
-                      const RenderSettings& options, NoticeLog& log) {
+Surroundings set_environment(Scene& scene, const std::optional<Surroundings>& asked,
+                             const CameraDescription& view, const RenderSettings& options, NoticeLog& log) {
   if (asked) {
-    if (const auto environment = turned(*asked, view)) scene.surround(environment);
+    if (const auto environment = turned(*asked, view)) scene.set_environment(environment);
     return *asked;
   }
   RenderSettings seen = options;
@@ -138,7 +138,7 @@ Surroundings surround(Scene& scene, const std::optional<Surroundings>& asked, co
   const bool lightless = scene.lights().size() == 0;
   Surroundings studio{std::string(default_surroundings),
                       built_in_environment(std::string(default_surroundings), view)};
-  scene.surround(studio.environment);
+  scene.set_environment(studio.environment);
   log.add({Notice::Severity::info,
            {},
            fmt::format("{}; adding a studio around it, --env none leaves it as it is",

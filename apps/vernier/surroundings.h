@@ -65,8 +65,8 @@ void replace_surroundings(SceneDescription& description, const std::optional<Sur
 /// Puts around `scene`, made of such a description, what it is rendered in by that camera, and says what that
 /// is: what was asked for; else its own where it has some, or where its lights light what the camera sees
 /// (integrators/visible_light.h); else the studio, with a note. `options` has the picture's size.
-Surroundings surround(Scene& scene, const std::optional<Surroundings>& asked, const CameraDescription& view,
-                      const RenderSettings& options, NoticeLog& log);
+Surroundings set_environment(Scene& scene, const std::optional<Surroundings>& asked,
+                             const CameraDescription& view, const RenderSettings& options, NoticeLog& log);
 
 }  // namespace apps
 }  // namespace vernier

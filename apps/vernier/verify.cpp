@@ -69,12 +69,12 @@ std::string text(const std::optional<RawHit>& hit) {
 }
 
 void print(const validation::CrossCheckResult& result, const Pair& pair, const std::string& scene) {
-  const uint64_t excused = result.at_boundary + result.at_end + result.tied;
+  const uint64_t within_rounding = result.at_boundary + result.at_end + result.tied;
   fmt::print("{}\n", one_line(fmt::format(
                          "{}: {} against {}, {} rays of paths: {} differ by more than rounding, {} by "
                          "rounding",
                          scene, pair[0]->name, pair[1]->name, format_count(double(result.rays)), result.real,
-                         excused)));
+                         within_rounding)));
   fmt::print("  at the edge of a triangle  {} ({} of them met nothing beyond)\n", result.at_boundary,
              result.leaks);
   fmt::print("  two surfaces at one place  {}\n", result.tied);
@@ -106,7 +106,7 @@ ExitCode run_verify(const VerifyFlags& flags) {
   settings.camera = place_camera(chosen, flags.camera, scene.geometry(), 0, log);
   fill_in_size(settings, settings.camera);
   fit_lens(settings, flags.camera.lens, scene, log);
-  surround(scene, std::nullopt, settings.camera, settings, log);
+  set_environment(scene, std::nullopt, settings.camera, settings, log);
 
   Geometry unfiltered = scene.accelerated_geometry();
   for (GeometryInstance& instance : unfiltered.instances) instance.filtered = instance.clear = false;
@@ -141,7 +141,7 @@ void register_verify(Program& program) {
                    "the two to compare; the first one's paths are taken")
       ->type_name("A,B")
       ->capture_default_str();
-  command->add_option("--seed", flags->seed, "of the paths")->type_name("N")->capture_default_str();
+  command->add_option("--seed", flags->seed, "seed of the paths")->type_name("N")->capture_default_str();
   command->add_option("-t,--threads", flags->threads, "0: all")->type_name("N")->capture_default_str();
   command->footer("Example: vernier verify scene.glb --rays 100000000\nExit code 1: one of them is wrong.");
   command->callback([&program, flags] { program.run = [flags] { return run_verify(*flags); }; });

@@ -72,7 +72,7 @@ void Sums::add(const Sums& other) {
   }
 }
 
-// That the expectation of every channel's difference is nought.
+// That the expectation of every channel's difference is zero.
 double Sums::p_value() const {
   double smallest = 1;
   for (size_t c = 0; c < 3; ++c) {

@@ -17,7 +17,7 @@ struct MeasuredImage {
   double degrees = std::numeric_limits<double>::infinity();
   /// One channel, not 0 where the error is not to be trusted; null: it is everywhere.
   const Image* unreliable = nullptr;
-  /// Whether neighbours err together, as in a picture that was filtered: their errors add up, not the squares
+  /// Whether neighbors err together, as in a picture that was filtered: their errors add up, not the squares
   /// of them.
   bool errs_together = false;
 };

@@ -172,12 +172,12 @@ Image features(const Image& achromatic, float pixels_per_degree) {
   scale_to_sum(smooth, 1);
   balance(edge);
   balance(point);
-  Image normalised = achromatic;
-  for (float& y : normalised.values) y = (y + 16) / 116;
-  const Image edge_x = convolve(normalised, edge, smooth), edge_y = convolve(normalised, smooth, edge);
-  const Image point_x = convolve(normalised, point, smooth), point_y = convolve(normalised, smooth, point);
+  Image normalized = achromatic;
+  for (float& y : normalized.values) y = (y + 16) / 116;
+  const Image edge_x = convolve(normalized, edge, smooth), edge_y = convolve(normalized, smooth, edge);
+  const Image point_x = convolve(normalized, point, smooth), point_y = convolve(normalized, smooth, point);
   Image result(achromatic.width, achromatic.height, 2);
-  for (size_t i = 0; i < normalised.values.size(); ++i) {
+  for (size_t i = 0; i < normalized.values.size(); ++i) {
     result.values[2 * i] = std::hypot(edge_x.values[i], edge_y.values[i]);
     result.values[2 * i + 1] = std::hypot(point_x.values[i], point_y.values[i]);
   }

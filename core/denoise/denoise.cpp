@@ -9,7 +9,7 @@
 #include "core/compare/metrics.h"
 #include "core/denoise/convolve.h"
 #include "core/denoise/denoise_filters.h"
-#include "core/film/likely_value.h"
+#include "core/film/shrinkage.h"
 #include "vernier/error.h"
 
 namespace vernier {
@@ -17,9 +17,8 @@ namespace {
 
 constexpr Denoiser table[] = {
     {"nlm", "non-local means: averages pixels whose surroundings look alike, given the noise", denoise_nlm},
-    {"bilateral", "averages neighbours whose colours differ no more than their noise", denoise_bilateral},
-    {"gaussian", "averages neighbours by distance, as far as the noise explains the change",
-     denoise_gaussian},
+    {"bilateral", "averages neighbors whose colours differ no more than their noise", denoise_bilateral},
+    {"gaussian", "averages neighbors by distance, as far as the noise explains the change", denoise_gaussian},
     {"median", "median of the 5 x 5 pixels around, as far as the noise explains the change", denoise_median},
 #ifdef VERNIER_OIDN
     {"oidn", "Open Image Denoise, a trained network; does not use the error layer", denoise_oidn, true},
@@ -29,7 +28,7 @@ constexpr Denoiser table[] = {
 constexpr int block = 32;  // pixels a side: wider than any filter's window
 constexpr int pool = 15;   // pixels a side over which the noise that is left is averaged
 
-/// Two independent measurements of one picture, as likely_value wants them.
+/// Two independent measurements of one picture, as shrinkage_estimate wants them.
 struct Halves {
   Image first, second;
   Image variance;  ///< of each value of their mean
@@ -40,9 +39,7 @@ struct Halves {
   Vec3d pixel(int x, int y) const { return (half_mean(x, y, 0) + half_mean(x, y, 1)) / 2.0; }
 };
 
-Vec3d independent_variance(const Halves& halves, int x, int y) {
-  return Vec3d(rgb_at(halves.variance, x, y));
-}
+Vec3d iid_variance(const Halves& halves, int x, int y) { return Vec3d(rgb_at(halves.variance, x, y)); }
 
 /// Finite everywhere. Where there are no error layers no variance is known, and the pixels stand for the
 /// truth.
@@ -82,7 +79,7 @@ Image picture_of(int width, int height, const Value& value) {
 bool far_apart(double a, double b) { return std::max(a, b) > 4 * std::min(a, b); }
 
 /// The filtered value; where its halves are far apart one has kept what a single sample brought, and it is no
-/// more than its neighbours' mean.
+/// more than its neighbors' mean.
 Vec3d agreed_value(const Halves& filtered, int x, int y) {
   const Vec3d first = filtered.half_mean(x, y, 0), second = filtered.half_mean(x, y, 1);
   const Vec3d around = mean_around(filtered, x, y);
@@ -102,10 +99,10 @@ Image relative_weights(const Halves& noisy, const Halves& filtered) {
   const Image agreed = picture_of(width, height, [&](int x, int y) { return agreed_value(filtered, x, y); });
   const auto agreed_at = [&](int x, int y) { return Vec3d(rgb_at(agreed, x, y)); };
   return picture_of(width, height, [&](int x, int y) {
-    const Vec3d own = noisy.pixel(x, y), likely = likely_value(noisy, x, y, agreed_at);
+    const Vec3d own = noisy.pixel(x, y), shrunk = shrinkage_estimate(noisy, x, y, agreed_at);
     Vec3d value = agreed_at(x, y);
     for (int c = 0; c < 3; ++c)
-      if (far_apart(own[c], value[c])) value[c] = likely[c];
+      if (far_apart(own[c], value[c])) value[c] = shrunk[c];
     value = max(value, least * own);
     return Vec3d(1, 1, 1) / (value * value + Vec3d(relative_error_epsilon));
   });
@@ -125,7 +122,7 @@ void add_pixel(BlockSums& sums, const Halves& noisy, const Halves& filtered, con
   const Vec3d fa = filtered.half_mean(x, y, 0), fb = filtered.half_mean(x, y, 1);
   const Vec3d weight(rgb_at(weights, x, y)), apart = (a - b) / 2.0;
   sums.noisy += dot(weight, apart * apart) / 3;
-  sums.denoised += dot(weight, (fa - a) * (fb - b) + independent_variance(filtered, x, y)) / 3;
+  sums.denoised += dot(weight, (fa - a) * (fb - b) + iid_variance(filtered, x, y)) / 3;
   ++sums.pixels;
 }
 

@@ -22,7 +22,7 @@ struct NoisyImage {
 };
 
 /// One line of the table of denoisers. `filter` is a pure function. Pixels that are not finite, or beyond
-/// 1e18, are replaced by their neighbours' mean first; what comes out is finite, and not negative where
+/// 1e18, are replaced by their neighbors' mean first; what comes out is finite, and not negative where
 /// nothing is that goes in. Throws Error(usage) when sizes differ.
 struct Denoiser {
   std::string_view name;

@@ -91,8 +91,8 @@ struct Ring {
   }
 };
 
-// A pixel brighter than four times the brightest of its eight neighbours, by an excess within three standard
-// errors, owes it to a few samples: it takes its neighbours' median, and the mean of their variances.
+// A pixel brighter than four times the brightest of its eight neighbors, by an excess within three standard
+// errors, owes it to a few samples: it takes its neighbors' median, and the mean of their variances.
 void remove_fireflies(GuidedImage& guided) {
   constexpr float outstanding = 4, errors = 3;
   const Image color = guided.color, variance = guided.variance;
@@ -113,7 +113,7 @@ void remove_fireflies(GuidedImage& guided) {
 }
 
 // Each variance is at least the median of the 3 x 3 about it: a pixel that its samples happened to agree on,
-// or that missed its light, is no surer than its neighbours. The median keeps a bright edge's noise from
+// or that missed its light, is no surer than its neighbors. The median keeps a bright edge's noise from
 // spreading.
 void raise_to_median(Image& variance) {
   const Image original = variance;

@@ -5,7 +5,7 @@
 
 #include "core/base/parallel.h"
 #include "core/compare/metrics.h"
-#include "core/film/pixel_evidence.h"
+#include "core/film/pixel_reliability.h"
 
 namespace vernier {
 namespace {
@@ -51,7 +51,7 @@ struct RowSums {
   size_t unreliable = 0, pixels = 0;
   bool complete = true;
 
-  void add_pixel(const Film& film, const PixelEvidence& evidence, int x, int y);
+  void add_pixel(const Film& film, const PixelReliability& reliability, int x, int y);
   void add(const RowSums& other) {
     least.add(other.least);
     likely.add(other.likely);
@@ -62,12 +62,13 @@ struct RowSums {
   }
 };
 
-void RowSums::add_pixel(const Film& film, const PixelEvidence& evidence, int x, int y) {
+void RowSums::add_pixel(const Film& film, const PixelReliability& reliability, int x, int y) {
   const Vec3d squared = squared_half_difference(film, x, y), shown = film.pixel(x, y);
   const bool doubtful = film.largest_share(x, y) > doubtful_share;
   double small = 0, middle = 0, large = 0;
   for (int c = 0; c < 3; ++c) {
-    const double low = evidence.likely.pixel(x, y)[c], high = doubtful ? std::max(low, shown[c]) : low;
+    const double low = reliability.shrunk_mean.pixel(x, y)[c],
+                 high = doubtful ? std::max(low, shown[c]) : low;
     small += relative_squared(squared[c], high) / 3;
     middle += relative_to_range(squared[c], low, high) / 3;
     large += relative_squared(squared[c], low) / 3;
@@ -75,19 +76,19 @@ void RowSums::add_pixel(const Film& film, const PixelEvidence& evidence, int x, 
   least.add(small);
   likely.add(middle);
   most.add(large);
-  unreliable += *evidence.unreliable.pixel(x, y) != 0;
+  unreliable += *reliability.unreliable.pixel(x, y) != 0;
   ++pixels;
 }
 
 /// Sums over the pixels that count: those that show a surface, or all where none does. (A plain background is
 /// without error, and the more of it there is, the less would be told of what stands before it.)
-RowSums sum_pixels(const Film& film, const PixelEvidence& evidence, bool covered_only) {
+RowSums sum_pixels(const Film& film, const PixelReliability& reliability, bool covered_only) {
   std::vector<RowSums> rows(size_t(film.height()));
   parallel_for(rows.size(), [&](size_t y) {
     for (int x = 0; x < film.width(); ++x) {
       const bool is_sampled = film.samples(x, int(y), 0) > 0 && film.samples(x, int(y), 1) > 0;
       rows[y].complete = rows[y].complete && is_sampled;
-      if (!covered_only || film.is_covered(x, int(y))) rows[y].add_pixel(film, evidence, x, int(y));
+      if (!covered_only || film.is_covered(x, int(y))) rows[y].add_pixel(film, reliability, x, int(y));
     }
   });
   RowSums total;
@@ -97,12 +98,12 @@ RowSums sum_pixels(const Film& film, const PixelEvidence& evidence, bool covered
 
 }  // namespace
 
-size_t estimate_error_bytes_per_pixel() { return gather_evidence_bytes_per_pixel(); }
+size_t estimate_error_bytes_per_pixel() { return assess_pixels_bytes_per_pixel(); }
 
 ErrorEstimate estimate_error(const Film& film) {
-  const PixelEvidence evidence = gather_evidence(film);
-  RowSums total = sum_pixels(film, evidence, true);
-  if (total.pixels == 0) total = sum_pixels(film, evidence, false);
+  const PixelReliability reliability = assess_pixels(film);
+  RowSums total = sum_pixels(film, reliability, true);
+  if (total.pixels == 0) total = sum_pixels(film, reliability, false);
   const auto n = double(total.pixels);
   ErrorEstimate estimate;
   estimate.unreliable = double(total.unreliable) / n;

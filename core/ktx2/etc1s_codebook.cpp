@@ -47,7 +47,7 @@ std::vector<Palette> read_palettes(std::span<const uint8_t> bytes, size_t count)
   std::array<HuffmanTable, 3> channel_changes;
   for (HuffmanTable& table : channel_changes) table = HuffmanTable::read(bits);
   const HuffmanTable intensity_changes = HuffmanTable::read(bits);
-  const bool is_grey = bits.read(1) != 0;
+  const bool is_gray = bits.read(1) != 0;
   const auto next_channel = [&](uint32_t previous) {
     const size_t range = previous <= 9 ? 0 : previous <= 21 ? 1 : 2;
     return (previous + channel_changes[range].decode(bits)) % channel_levels;
@@ -59,7 +59,7 @@ std::vector<Palette> read_palettes(std::span<const uint8_t> bytes, size_t count)
   for (Palette& palette : palettes) {
     intensity = (intensity + intensity_changes.decode(bits)) % intensity_tables;
     color[0] = next_channel(color[0]);
-    for (size_t c = 1; c < 3; ++c) color[c] = is_grey ? color[0] : next_channel(color[c]);
+    for (size_t c = 1; c < 3; ++c) color[c] = is_gray ? color[0] : next_channel(color[c]);
     palette = palette_of(color, intensity);
   }
   check(bits, "endpoints");

@@ -26,7 +26,7 @@ struct Ray {
   float t_max = std::numeric_limits<float>::infinity();
   /// The triangles on whose planes the ray begins and ends. A line meets a plane once, so they cannot stand
   /// in between, whatever a test that rounds may say of slivers; accelerators let the ray pass them.
-  TriangleId leaves{}, reaches{};
+  TriangleId origin_triangle{}, target_triangle{};
   /// When it travels: 0 as the shutter opens, 1 as it closes. Nothing to what stands still.
   float time = middle_of_shutter;
 

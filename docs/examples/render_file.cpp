@@ -22,7 +22,7 @@ int main(int argc, char** argv) try {
   settings.camera = cameras.empty() ? vernier::fitted_camera(*scene, 4 / 3.f) : cameras[0];
   settings.limits = {.spp = 1024, .error = 0.02};
   if (vernier::is_dark(*scene, settings))
-    vernier::surround(*scene, vernier::built_in_environment("studio", settings.camera));
+    vernier::set_environment(*scene, vernier::built_in_environment("studio", settings.camera));
   vernier::RenderSession session(scene, settings);
   session.run();
 

@@ -162,7 +162,7 @@ VERNIER_API std::shared_ptr<Scene> build_scene(SceneDescription description,
                                                const SceneOptions& options = {});
 
 /// Puts an environment around a scene, in place of the one it has, if any. Not while anybody renders it.
-VERNIER_API void surround(Scene& scene, std::shared_ptr<const EnvironmentDescription> environment);
+VERNIER_API void set_environment(Scene& scene, std::shared_ptr<const EnvironmentDescription> environment);
 
 /// What scatters light all over a scene.
 struct Fog {

@@ -16,7 +16,7 @@ struct Transform {
   Vec3f vector(const Vec3f& v) const { return x * v.x + y * v.y + z * v.z; }
 
   /// Product of the transposed linear part with n: maps normals of the image space back, and, on an inverse,
-  /// normals forward. Not normalised.
+  /// normals forward. Not normalized.
   Vec3f transposed_vector(const Vec3f& n) const { return {dot(x, n), dot(y, n), dot(z, n)}; }
 
   /// |linear part| v + |origin| factor, component-wise absolute values: carries rounding-error bounds through

@@ -22,7 +22,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are little-endian");
-static_assert(sizeof(RenderResult::Look) == 6 * sizeof(double));
+static_assert(sizeof(ConvergencePoint) == 6 * sizeof(double));
 static_assert(sizeof(TileLight) == 13 * sizeof(float));
 
 /// Constant bytes of constant values.
@@ -38,46 +38,46 @@ auto bytes_of(Values& values) {
 /// Calls visit(name, bytes) for each array of a state, in the file's order.
 template <typename State, typename Plan, typename Visit>
 void for_each_array(State& state, Plan& plan_counts, const Visit& visit) {
-  visit("film", state.so_far.film.bytes());
-  visit("alpha", state.so_far.film.alpha_bytes());
+  visit("film", state.partial.film.bytes());
+  visit("alpha", state.partial.film.alpha_bytes());
   visit("guide 1", state.guides[0].bytes());
   visit("guide 2", state.guides[1].bytes());
   visit("extra", bytes_of(state.drawn.extra));
   visit("light", bytes_of(state.light));
   visit("plan", bytes_of(plan_counts));
-  visit("parts", bytes_of(state.parts));
-  visit("looks", bytes_of(state.so_far.convergence));
-  visit("bad samples", bytes_of(state.so_far.bad_sample_examples));
-  visit("splats", state.so_far.film.splat_bytes());
-  for (auto& part : state.so_far.light) visit(part.layer.c_str(), part.film.bytes());
-  if (state.so_far.film.has_splats())
-    for (auto& part : state.so_far.light) visit((part.layer + " splats").c_str(), part.film.splat_bytes());
+  visit("parts", bytes_of(state.tile_progress));
+  visit("looks", bytes_of(state.partial.convergence));
+  visit("bad samples", bytes_of(state.partial.bad_sample_examples));
+  visit("splats", state.partial.film.splat_bytes());
+  for (auto& part : state.partial.light) visit(part.layer.c_str(), part.film.bytes());
+  if (state.partial.film.has_splats())
+    for (auto& part : state.partial.light) visit((part.layer + " splats").c_str(), part.film.splat_bytes());
 }
 
 Json header_of(const RenderIdentity& identity, const RenderState& state) {
-  const RenderResult& so_far = state.so_far;
+  const RenderResult& partial = state.partial;
   const SamplePlan::Numbers& pass = state.pass.numbers();
   Json header{{"render", Json::array()},
-              {"width", so_far.film.width()},
-              {"height", so_far.film.height()},
+              {"width", partial.film.width()},
+              {"height", partial.film.height()},
               {"adaptive", !state.guides[0].bytes().empty()},
-              {"has_alpha", so_far.film.has_alpha()},
+              {"has_alpha", partial.film.has_alpha()},
               {"light_layers", Json::array()},
-              {"has_splats", so_far.film.has_splats()},
+              {"has_splats", partial.film.has_splats()},
               {"light_batches", state.light_batches},
-              {"bad_light_paths", so_far.bad_light_paths},
-              {"done", state.done},
+              {"bad_light_paths", partial.bad_light_paths},
+              {"done", state.completed_spp},
               {"guiding", state.drawn.guiding},
-              {"looked_at", state.looked_at},
+              {"looked_at", state.last_checked_spp},
               {"pass", {{"size", pass.size}, {"odd_half", pass.odd_half}, {"guiding", pass.guiding}}},
-              {"seconds", so_far.seconds},
-              {"samples", so_far.samples},
-              {"rays", {so_far.rays.camera, so_far.rays.bounce, so_far.rays.shadow}},
-              {"bad_samples", so_far.bad_samples},
+              {"seconds", partial.seconds},
+              {"samples", partial.samples},
+              {"rays", {partial.rays.camera, partial.rays.bounce, partial.rays.shadow}},
+              {"bad_samples", partial.bad_samples},
               {"arrays", Json::array()}};
-  for (const LightFilm& part : so_far.light) header["light_layers"].push_back(part.layer);
-  if (!so_far.convergence.empty()) {
-    const RenderResult::Look& look = so_far.convergence.back();
+  for (const LightFilm& part : partial.light) header["light_layers"].push_back(part.layer);
+  if (!partial.convergence.empty()) {
+    const ConvergencePoint& look = partial.convergence.back();
     header["look"] = {{"samples_per_pixel", look.samples_per_pixel}, {"rel_rmse", look.error.rel_rmse}};
   }
   for (const auto& [name, value] : identity) header["render"].push_back(Json::array({name, value}));
@@ -124,13 +124,13 @@ std::shared_ptr<RenderState> allocate_state(const CheckpointReader& reader, cons
   const bool uneven = pass.size > 0 && bytes(6) > 0;
   std::vector<size_t> expected{pixels * Film::bytes_per_pixel(),
                                has_alpha ? pixels * Film::alpha_bytes_per_pixel() : 0,
-                               adaptive ? pixels * SampleGuide::bytes_per_pixel() : 0,
-                               adaptive ? pixels * SampleGuide::bytes_per_pixel() : 0,
+                               adaptive ? pixels * SampleStatistics::bytes_per_pixel() : 0,
+                               adaptive ? pixels * SampleStatistics::bytes_per_pixel() : 0,
                                adaptive ? pixels * Film::halves * sizeof(uint32_t) : 0,
                                tiles * sizeof(TileLight),
                                uneven ? pixels * Film::halves * sizeof(uint16_t) : 0,
                                pass.size > 0 ? tiles * sizeof(uint32_t) : 0,
-                               bytes(8) / sizeof(RenderResult::Look) * sizeof(RenderResult::Look),
+                               bytes(8) / sizeof(ConvergencePoint) * sizeof(ConvergencePoint),
                                bytes(9) / sizeof(BadSample) * sizeof(BadSample),
                                has_splats ? pixels * Film::splat_bytes_per_pixel() : 0};
   expected.resize(expected.size() + light_layers.size(), pixels * Film::bytes_per_pixel());
@@ -148,40 +148,41 @@ std::shared_ptr<RenderState> allocate_state(const CheckpointReader& reader, cons
 
   auto state =
       std::make_shared<RenderState>(int(width), int(height), adaptive, has_alpha, light_layers, has_splats);
-  state->done = done;
+  state->completed_spp = done;
   for (size_t half = 0; half < Film::halves; ++half)
     state->drawn.guiding[half] =
         uint32_t(whole_number(reader, header.at("guiding").at(half), "guiding", RenderState::most_samples));
-  state->looked_at = uint32_t(whole_number(reader, header.at("looked_at"), "looked_at", done));
+  state->last_checked_spp = uint32_t(whole_number(reader, header.at("looked_at"), "looked_at", done));
   if (uneven) pass.counts.resize(pixels * Film::halves);
-  if (pass.size > 0) state->parts.resize(tiles);
-  state->so_far.convergence.resize(bytes(8) / sizeof(RenderResult::Look));
-  state->so_far.bad_sample_examples.resize(bytes(9) / sizeof(BadSample));
+  if (pass.size > 0) state->tile_progress.resize(tiles);
+  state->partial.convergence.resize(bytes(8) / sizeof(ConvergencePoint));
+  state->partial.bad_sample_examples.resize(bytes(9) / sizeof(BadSample));
   return state;
 }
 
 /// Of the header, and which films have how many.
 void read_light_paths(const CheckpointReader& reader, const Json& header, RenderState& state) {
-  const bool has_splats = state.so_far.film.has_splats();
+  const bool has_splats = state.partial.film.has_splats();
   state.light_batches = whole_number(reader, header.at("light_batches"), "light_batches",
                                      has_splats ? LightPass::most_batches : 0);
   const uint64_t paths = state.light_batches * LightPass::batch_size;
-  state.so_far.bad_light_paths = whole_number(reader, header.at("bad_light_paths"), "bad_light_paths", paths);
-  LightPass::count_paths(state.so_far, 0, state.light_batches);
+  state.partial.bad_light_paths =
+      whole_number(reader, header.at("bad_light_paths"), "bad_light_paths", paths);
+  LightPass::count_paths(state.partial, 0, state.light_batches);
 }
 
 /// Totals of the header.
-void read_totals(const CheckpointReader& reader, const Json& header, RenderResult& so_far) {
-  so_far.samples = whole_number(reader, header.at("samples"), "samples");
-  so_far.bad_samples = whole_number(reader, header.at("bad_samples"), "bad_samples", so_far.samples);
+void read_totals(const CheckpointReader& reader, const Json& header, RenderResult& partial) {
+  partial.samples = whole_number(reader, header.at("samples"), "samples");
+  partial.bad_samples = whole_number(reader, header.at("bad_samples"), "bad_samples", partial.samples);
   const Json& rays = header.at("rays");
   const auto count = [&](size_t i) { return whole_number(reader, rays.at(i), "rays"); };
-  so_far.rays = {count(0), count(1), count(2)};
+  partial.rays = {count(0), count(1), count(2)};
   const Json& seconds = header.at("seconds");
   constexpr double longest = 1e10;  // three centuries
   if (!seconds.is_number() || !(seconds.get<double>() >= 0 && seconds.get<double>() <= longest))
     reader.damaged("'seconds' is not a duration");
-  so_far.seconds = seconds;
+  partial.seconds = seconds;
 }
 
 void read_state(CheckpointReader& reader, const Json& header, Checkpoint& checkpoint) {
@@ -190,7 +191,7 @@ void read_state(CheckpointReader& reader, const Json& header, Checkpoint& checkp
   SamplePlan::Numbers pass;
   checkpoint.state = allocate_state(reader, header, pass);
   RenderState& state = *checkpoint.state;
-  read_totals(reader, header, state.so_far);
+  read_totals(reader, header, state.partial);
   read_light_paths(reader, header, state);
   const Json& arrays = header.at("arrays");
   size_t i = 0;

@@ -78,7 +78,7 @@ Denoised denoise(const LayeredImage& picture, const Denoiser& denoiser) {
   return {std::move(denoised.picture), denoised.error, std::move(denoised.pixel_error)};
 }
 
-void put_into(LayeredImage& picture, const Denoised& denoised) {
+void replace_color(LayeredImage& picture, const Denoised& denoised) {
   for (std::string& name : picture.channel_names)
     if (name.starts_with("error.") && (name != "error.unreliable" || !denoised.pixel_error))
       name = "noisyE" + name.substr(1);
@@ -101,7 +101,7 @@ Metadata denoised_metadata(const Denoiser& denoiser, const std::optional<Denoise
 std::optional<DenoisedError> denoise(LayeredImage& picture, const std::string& filter) {
   const Denoiser& denoiser = find_denoiser(filter);
   Denoised denoised = denoise(picture, denoiser);
-  put_into(picture, denoised);
+  replace_color(picture, denoised);
   for (const auto& [name, value] : denoised_metadata(denoiser, denoised.error))
     picture.metadata[name] = value;
   return denoised.error;

@@ -23,7 +23,7 @@ Denoised denoise(const LayeredImage& picture, const Denoiser& denoiser);
 /// Puts the denoised colour into `picture`, whose first three channels are the noisy one, and its error into
 /// the layer `error`. What that layer held goes on as `noisyError`; when the error is not known there is no
 /// layer `error` any more.
-void put_into(LayeredImage& picture, const Denoised& denoised);
+void replace_color(LayeredImage& picture, const Denoised& denoised);
 
 /// Image header entries that say so.
 Metadata denoised_metadata(const Denoiser& denoiser, const std::optional<DenoisedError>& error);

@@ -10,10 +10,10 @@
 
 namespace vernier {
 
-/// How many times the error asked for there is: by the figure itself, and by the end of its interval, which
-/// may be a tenth larger. At 1 the picture is good enough, and with 97.5 % confidence not much worse than
-/// asked. Not a number while the error is not known.
-inline double error_excess(const ErrorEstimate& error, double asked) {
+/// Ratio of the estimated error to the one asked for: of the figure itself, or of the end of its interval
+/// over 1.1, whichever is larger. At 1 the picture is good enough, and with 97.5 % confidence not much worse
+/// than asked. Not a number while the error is not known.
+inline double error_ratio(const ErrorEstimate& error, double asked) {
   return std::max(error.rel_rmse, error.high / 1.1) / asked;
 }
 
@@ -22,7 +22,7 @@ inline double error_excess(const ErrorEstimate& error, double asked) {
 /// scatters. 0: it is reached.
 inline double samples_for_error(const ErrorEstimate& error, double samples_per_pixel, double asked) {
   constexpr double margin = 1.1, unknown = 4;
-  const double excess = error_excess(error, asked);
+  const double excess = error_ratio(error, asked);
   if (excess <= 1) return 0;
   return samples_per_pixel * (std::isfinite(excess) ? margin * excess * excess : unknown);
 }

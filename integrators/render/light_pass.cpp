@@ -30,7 +30,7 @@ void LightPass::advance(RenderState& state, uint64_t end) const {
 }
 
 void LightPass::add(RenderState& state, const std::vector<Caught>& batches) const {
-  RenderResult& result = state.so_far;
+  RenderResult& result = state.partial;
   const int height = result.film.height();
   parallel_for(size_t((height + rows_per_band - 1) / rows_per_band), [&](size_t band) {
     for (size_t batch = 0; batch < batches.size(); ++batch) {

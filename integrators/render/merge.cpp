@@ -41,7 +41,7 @@ void Merged::add(const std::string& path) {
                 fmt::format("has the seed {} of {}, so both hold the same samples; render parts with "
                             "different --seed",
                             seed, same->second));
-  RenderResult& more = checkpoint.state->so_far;
+  RenderResult& more = checkpoint.state->partial;
   if (!result_) {
     identity_ = std::move(checkpoint.identity);
     result_ = std::move(more);

@@ -34,7 +34,7 @@ void keep_few(std::vector<BadSample>& examples) {
 /// One render call. Tiles write disjoint pixels of the film; totals are merged once a tile.
 class Renderer {
  public:
-  Renderer(const RenderJob& job, RenderState& state, const std::atomic<bool>& stop, RenderHooks hooks)
+  Renderer(const RenderJob& job, RenderState& state, const std::atomic<bool>& stop, RenderCallbacks callbacks)
       : scene_(job.scene),
         camera_samples_(job.camera, job.scene, job.settings),
         integrator_(job.integrator),
@@ -45,9 +45,9 @@ class Renderer {
         small_lamps_(job.light_paths ? job.light_paths->small_lamps() : nullptr),
         crop_(rendered_part(job.settings)),
         stop_(stop),
-        hooks_(std::move(hooks)),
+        callbacks_(std::move(callbacks)),
         state_(state),
-        seconds_before_(state_.so_far.seconds) {
+        seconds_before_(state_.partial.seconds) {
     if (!job.light_paths) return;
     light_pass_.emplace(*job.light_paths, sorter_);
     result().light_path_kind = job.light_paths->kind();
@@ -56,12 +56,12 @@ class Renderer {
   void run() {
     save_.next = seconds() + save_.interval;
     preview_.next = seconds() + preview_.interval;
-    if (state_.so_far.samples > 0) look();
+    if (state_.partial.samples > 0) check_limits();
     while (!reason_) {
       if (state_.pass.size() == 0) plan_pass();
       render_pass();
       if (is_pass_complete()) end_pass();
-      look();
+      check_limits();
     }
     if (save_.act) take(save_);
     finish();
@@ -85,8 +85,8 @@ class Renderer {
     std::atomic<bool> is_news = false;  ///< whether something has been rendered since the last one
   };
 
-  RenderResult& result() { return state_.so_far; }
-  const RenderResult& result() const { return state_.so_far; }
+  RenderResult& result() { return state_.partial; }
+  const RenderResult& result() const { return state_.partial; }
   double samples_per_pixel() const { return double(result().samples) / (double(crop_.width) * crop_.height); }
   double seconds() const {
     const std::chrono::duration<double> running = std::chrono::steady_clock::now() - start_;
@@ -96,43 +96,44 @@ class Renderer {
 
   /// Without regard to --spp, which may end the render in the midst of a pass.
   void plan_pass() {
-    const uint32_t size = pass_size(state_.done);
-    const bool may_adapt = options_.adaptive && state_.done >= pilot;
+    const uint32_t size = pass_size(state_.completed_spp);
+    const bool may_adapt = options_.adaptive && state_.completed_spp >= pilot;
     state_.pass = may_adapt ? SamplePlan::adaptive(state_.drawn, state_.guides, size)
                             : SamplePlan::uniform(state_.drawn, size);
-    state_.parts.assign(size_t(state_.tile_count()), 0);
+    state_.tile_progress.assign(size_t(state_.tile_count()), 0);
   }
 
   /// How much of the pass is wanted, in samples a pixel.
   uint32_t wanted_part() const {
     if (options_.limits.spp <= 0) return state_.pass.size();
-    return std::min(state_.pass.size(), uint32_t(std::max(0, options_.limits.spp - int(state_.done))));
+    return std::min(state_.pass.size(),
+                    uint32_t(std::max(0, options_.limits.spp - int(state_.completed_spp))));
   }
   /// Batches of light paths that go with the samples of complete passes and that part of the next.
   uint64_t light_batches(uint32_t part) const {
-    return light_pass_ ? light_pass_->batches(state_.done + part) : 0;
+    return light_pass_ ? light_pass_->batches(state_.completed_spp + part) : 0;
   }
   bool is_pass_complete() const {
     if (state_.light_batches < light_batches(state_.pass.size())) return false;
-    return std::all_of(state_.parts.begin(), state_.parts.end(),
+    return std::all_of(state_.tile_progress.begin(), state_.tile_progress.end(),
                        [this](uint32_t part) { return part == state_.pass.size(); });
   }
   void end_pass() {
-    state_.done += state_.pass.size();
+    state_.completed_spp += state_.pass.size();
     for (int half = 0; half < Film::halves; ++half)
       state_.drawn.guiding[size_t(half)] += state_.pass.guiding_count(half);
     state_.pass = {};
-    state_.parts.clear();
+    state_.tile_progress.clear();
   }
   bool has_all_samples() const {
     if (options_.limits.spp <= 0 || state_.light_batches < light_batches(wanted_part())) return false;
-    return std::all_of(state_.parts.begin(), state_.parts.end(),
+    return std::all_of(state_.tile_progress.begin(), state_.tile_progress.end(),
                        [wanted = wanted_part()](uint32_t part) { return part >= wanted; }) &&
-           state_.done + wanted_part() >= uint32_t(options_.limits.spp);
+           state_.completed_spp + wanted_part() >= uint32_t(options_.limits.spp);
   }
 
   /// Is it enough? The error counts between passes only, for a render that was cut must not end elsewhere.
-  void look() {
+  void check_limits() {
     if (has_all_samples()) {
       reason_ = StopReason::samples;
     } else if (stop_) {
@@ -143,13 +144,14 @@ class Renderer {
     const bool has_target = options_.limits.error > 0;
     // The estimate costs as much as a few samples; without a target, looking when samples have grown by a
     // half is often enough.
-    const bool due = has_target || 2 * state_.done >= 3 * state_.looked_at;
-    if (state_.pass.size() == 0 && state_.done >= pilot && state_.done > state_.looked_at && due) {
-      state_.looked_at = state_.done;
+    const bool due = has_target || 2 * state_.completed_spp >= 3 * state_.last_checked_spp;
+    if (state_.pass.size() == 0 && state_.completed_spp >= pilot &&
+        state_.completed_spp > state_.last_checked_spp && due) {
+      state_.last_checked_spp = state_.completed_spp;
       result().convergence.push_back({seconds(), samples_per_pixel(), estimate_error(result().film)});
     }
     if (!reason_ && has_target && !result().convergence.empty() &&
-        error_excess(result().convergence.back().error, options_.limits.error) <= 1)
+        error_ratio(result().convergence.back().error, options_.limits.error) <= 1)
       reason_ = StopReason::error;
   }
 
@@ -158,7 +160,7 @@ class Renderer {
     const auto& looks = result().convergence;
     const bool looked = !looks.empty() && looks.back().samples_per_pixel == samples_per_pixel();
     result().error = looked ? looks.back().error : estimate_error(result().film);
-    if (!looked && state_.done >= pilot)
+    if (!looked && state_.completed_spp >= pilot)
       result().convergence.push_back({seconds(), samples_per_pixel(), result().error});
     result().missing = estimate_missing(state_.light, result().film);
     result().seconds = seconds();
@@ -171,8 +173,8 @@ class Renderer {
       if (is_pause_due()) take_pauses();
       parallel_for(size_t(state_.tile_count()), [&](size_t tile) {
         // Every pixel gets its first samples unless interrupted.
-        if (stop_ || (state_.done > 0 && out_of_time()) || is_pause_due()) return;
-        uint32_t& part = state_.parts[tile];
+        if (stop_ || (state_.completed_spp > 0 && out_of_time()) || is_pause_due()) return;
+        uint32_t& part = state_.tile_progress[tile];
         if (part < wanted) render_tile(int(tile), part, wanted);
         part = std::max(part, wanted);
       });
@@ -182,7 +184,7 @@ class Renderer {
 
   /// Light paths of the samples that there are now.
   void trace_light(uint64_t wanted) {
-    while (state_.light_batches < wanted && !stop_ && !(state_.done > 0 && out_of_time()) &&
+    while (state_.light_batches < wanted && !stop_ && !(state_.completed_spp > 0 && out_of_time()) &&
            !is_pause_due()) {
       light_pass_->advance(state_, wanted);
       save_.is_news = preview_.is_news = true;
@@ -210,12 +212,12 @@ class Renderer {
     return pause.act && pause.is_news && (now || seconds() >= pause.next);
   }
   bool is_pause_due() const {
-    const bool now = hooks_.now && *hooks_.now;
+    const bool now = callbacks_.now && *callbacks_.now;
     return is_due(save_, now) || is_due(preview_, now);
   }
 
   void take_pauses() {
-    const bool now = hooks_.now && hooks_.now->exchange(false);
+    const bool now = callbacks_.now && callbacks_.now->exchange(false);
     if (is_due(save_, now)) take(save_);
     if (!is_due(preview_, now)) return;
     result().error = estimate_error(result().film);
@@ -314,8 +316,8 @@ class Renderer {
     if (options_.limits.error > 0 && !result().convergence.empty()) {
       // Squared error falls as one over the samples, and is looked at where a pass ends.
       const auto& last = result().convergence.back();
-      const double needed = last.samples_per_pixel * square(error_excess(last.error, options_.limits.error));
-      double end = state_.done + state_.pass.size();
+      const double needed = last.samples_per_pixel * square(error_ratio(last.error, options_.limits.error));
+      double end = state_.completed_spp + state_.pass.size();
       while (end < needed && end < 1e9) end += pass_size(uint32_t(end));
       p.fraction = std::max(p.fraction, p.samples_per_pixel / end);
     }
@@ -334,15 +336,16 @@ class Renderer {
   std::optional<LightPass> light_pass_;
   const Crop crop_;
   const std::atomic<bool>& stop_;
-  const RenderHooks hooks_;
+  const RenderCallbacks callbacks_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   RenderState& state_;
   const double seconds_before_;  ///< of rendering, by those who did what state_ began with
-  Pause save_{hooks_.save, hooks_.save_interval}, preview_{hooks_.preview, hooks_.preview_interval};
+  Pause save_{callbacks_.on_checkpoint, callbacks_.checkpoint_interval},
+      preview_{callbacks_.on_preview, callbacks_.preview_interval};
   double paused_ = 0;  ///< seconds taken by them, in which nothing was rendered
   std::optional<StopReason> reason_;
   std::mutex mutex_;
-  ObserverThread observer_{hooks_.observe};
+  ObserverThread observer_{callbacks_.on_progress};
 };
 
 }  // namespace
@@ -351,12 +354,14 @@ Crop rendered_part(const RenderSettings& settings) {
   return settings.crop.width > 0 ? settings.crop : Crop{0, 0, settings.width, settings.height};
 }
 
-void render(const RenderJob& job, RenderState& state, const std::atomic<bool>& stop, RenderHooks hooks) {
-  Renderer(job, state, stop, std::move(hooks)).run();
+void render(const RenderJob& job, RenderState& state, const std::atomic<bool>& stop,
+            RenderCallbacks callbacks) {
+  Renderer(job, state, stop, std::move(callbacks)).run();
 }
 
 RenderResult render(const Scene& scene, const Camera& camera, const Integrator& integrator,
-                    const RenderSettings& settings, const std::atomic<bool>& stop, RenderHooks hooks) {
+                    const RenderSettings& settings, const std::atomic<bool>& stop,
+                    RenderCallbacks callbacks) {
   const Crop part = rendered_part(settings);
   const Backdrop backdrop(settings);
   const LightSorter sorter(settings.light_split, scene);
@@ -364,8 +369,8 @@ RenderResult render(const Scene& scene, const Camera& camera, const Integrator& 
   RenderState state(part.width, part.height, settings.adaptive, backdrop.is_transparent(), sorter.layers(),
                     light_paths.has_value());
   render({scene, camera, integrator, settings, backdrop, sorter, light_paths ? &*light_paths : nullptr},
-         state, stop, std::move(hooks));
-  return std::move(state.so_far);
+         state, stop, std::move(callbacks));
+  return std::move(state.partial);
 }
 
 }  // namespace vernier

@@ -38,6 +38,12 @@ struct LightFilm {
   Film film;
 };
 
+/// The error that a render had reached after so many seconds and samples.
+struct ConvergencePoint {
+  double seconds, samples_per_pixel;
+  ErrorEstimate error;
+};
+
 struct RenderResult {
   explicit RenderResult(Film empty) : film(std::move(empty)) {}
 
@@ -45,12 +51,7 @@ struct RenderResult {
   std::vector<LightFilm> light;  ///< parts of it that were asked for
   StopReason reason = StopReason::samples;
   ErrorEstimate error;
-  /// Error after passes, in order, and at the end: how this render converged.
-  struct Look {
-    double seconds, samples_per_pixel;
-    ErrorEstimate error;
-  };
-  std::vector<Look> convergence;
+  std::vector<ConvergencePoint> convergence;  ///< after passes, in order, and at the end
   double seconds = 0;
   uint64_t samples = 0;
   RayCounts rays;
@@ -61,18 +62,18 @@ struct RenderResult {
   std::vector<BadSample> bad_sample_examples;           ///< the first few by column, row, half and index
 };
 
-/// Who is told of a render on its way.
-struct RenderHooks {
-  /// Holds up nothing but the end of render(), which waits for it to return. Once it has thrown it is told no
-  /// more.
-  std::function<void(const RenderProgress&)> observe = {};
-  /// Gets the state after each `save_interval` seconds of rendering, but no sooner than after twenty times as
-  /// long as the last save took (0: after every tile), and once at the end. Called on the thread that called
-  /// render() while nothing is rendered; its time counts nowhere.
-  std::function<void(const RenderState&)> save = {};
-  double save_interval = std::numeric_limits<double>::infinity();
+/// Called while a render is on its way.
+struct RenderCallbacks {
+  /// Runs on a thread of its own, so it delays only the end of render(), which waits for it to return. It is
+  /// not called again once it has thrown.
+  std::function<void(const RenderProgress&)> on_progress = {};
+  /// Gets the state after each `checkpoint_interval` seconds of rendering, but no sooner than after twenty
+  /// times as long as the last save took (0: after every tile), and once at the end. Called on the thread
+  /// that called render() while nothing is rendered; its time counts nowhere.
+  std::function<void(const RenderState&)> on_checkpoint = {};
+  double checkpoint_interval = std::numeric_limits<double>::infinity();
   /// Gets the state in the same way, its error estimated, but not at the end.
-  std::function<void(const RenderState&)> preview = {};
+  std::function<void(const RenderState&)> on_preview = {};
   double preview_interval = std::numeric_limits<double>::infinity();
   /// Where it becomes true, both are called soon whatever their intervals, and it is made false. Null: never.
   std::atomic<bool>* now = nullptr;
@@ -94,12 +95,15 @@ struct RenderJob {
 
 /// Renders tiles of the picture in passes on all threads, from where `state` is, of a render with the same
 /// settings but for its limits, to the limits, which are of the whole render. The same bytes for any number
-/// of threads, and wherever a render with the same limits was cut and gone on with. `stop` may become true at
-/// any time (from a signal handler): rendering then ends within about a tile, with what is there.
-void render(const RenderJob& job, RenderState& state, const std::atomic<bool>& stop, RenderHooks hooks = {});
+/// of threads, independent of where a render with the same limits was interrupted and resumed. `stop` may
+/// become true at any time (from a signal handler): rendering then ends within about a tile, with what is
+/// there.
+void render(const RenderJob& job, RenderState& state, const std::atomic<bool>& stop,
+            RenderCallbacks callbacks = {});
 
 /// The same from the beginning.
 RenderResult render(const Scene& scene, const Camera& camera, const Integrator& integrator,
-                    const RenderSettings& settings, const std::atomic<bool>& stop, RenderHooks hooks = {});
+                    const RenderSettings& settings, const std::atomic<bool>& stop,
+                    RenderCallbacks callbacks = {});
 
 }  // namespace vernier

@@ -7,7 +7,7 @@
 namespace vernier {
 namespace {
 
-bool is_plausible(const RenderResult::Look& look) {
+bool is_plausible(const ConvergencePoint& look) {
   constexpr double most = 1e10;  // seconds are three centuries
   const auto is_within = [](double value) { return value >= 0 && value <= most; };
   return is_within(look.seconds) && is_within(look.samples_per_pixel) && is_within(look.error.unreliable);
@@ -48,22 +48,22 @@ MissingEstimate estimate_missing(std::vector<TileLight> tiles, const Film& film)
 }
 
 const char* implausible_part(const RenderState& state) {
-  const RenderResult& so_far = state.so_far;
+  const RenderResult& partial = state.partial;
   const auto all = [](const auto& values, const auto& holds) {
     return std::all_of(values.begin(), values.end(), holds);
   };
-  if (!so_far.film.is_plausible() || accepted_samples(so_far.film) + so_far.bad_samples != so_far.samples)
+  if (!partial.film.is_plausible() || accepted_samples(partial.film) + partial.bad_samples != partial.samples)
     return "film";
-  for (const LightFilm& part : so_far.light)
+  for (const LightFilm& part : partial.light)
     if (!part.film.is_plausible()) return part.layer.c_str();
   if (!state.guides[0].is_plausible()) return "guide 1";
   if (!state.guides[1].is_plausible()) return "guide 2";
   const auto is_count = [](uint32_t count) { return count <= RenderState::most_samples; };
   if (!all(state.drawn.guiding, is_count) || !all(state.drawn.extra, is_count)) return "extra";
   if (!all(state.light, [](const TileLight& light) { return light.is_plausible(); })) return "light";
-  if (!all(state.parts, [&](uint32_t part) { return part <= state.pass.size(); })) return "parts";
-  if (!all(so_far.convergence, [](const auto& look) { return is_plausible(look); })) return "looks";
-  if (!all(so_far.bad_sample_examples, [](const auto& bad) { return is_plausible(bad); }))
+  if (!all(state.tile_progress, [&](uint32_t part) { return part <= state.pass.size(); })) return "parts";
+  if (!all(partial.convergence, [](const auto& look) { return is_plausible(look); })) return "looks";
+  if (!all(partial.bad_sample_examples, [](const auto& bad) { return is_plausible(bad); }))
     return "bad samples";
   return nullptr;
 }

@@ -17,7 +17,7 @@ namespace vernier {
 /// from what complete passes have found and are completed before the next is planned, so it does not matter
 /// where a render was cut.
 struct RenderState {
-  static constexpr int tile_size = 16;  ///< pixels a side of what is rendered without looking up
+  static constexpr int tile_size = 16;  ///< pixels a side; limits are checked between tiles
 
   /// More samples a pixel than any render takes, and few enough for an int to hold twice as many.
   static constexpr uint32_t most_samples = 1 << 30;
@@ -25,28 +25,29 @@ struct RenderState {
   /// Of a picture, or crop, of which nothing is rendered yet.
   RenderState(int width, int height, bool adaptive, bool has_alpha = false,
               std::span<const std::string> light_layers = {}, bool has_splats = false)
-      : so_far(Film(width, height, has_alpha, has_splats)),
-        guides{SampleGuide(adaptive ? width : 0, height), SampleGuide(adaptive ? width : 0, height)},
+      : partial(Film(width, height, has_alpha, has_splats)),
+        guides{SampleStatistics(adaptive ? width : 0, height),
+               SampleStatistics(adaptive ? width : 0, height)},
         drawn{{}, std::vector<uint32_t>(adaptive ? size_t(width) * height * Film::halves : 0)},
         light(size_t(tile_count())) {
     for (const std::string& layer : light_layers)
-      so_far.light.push_back({layer, Film(width, height, false, has_splats)});
+      partial.light.push_back({layer, Film(width, height, false, has_splats)});
   }
 
   /// Of a picture, or crop, of this size.
   static int tile_count(int width, int height) {
     return ((width + tile_size - 1) / tile_size) * ((height + tile_size - 1) / tile_size);
   }
-  int tile_columns() const { return (so_far.film.width() + tile_size - 1) / tile_size; }
+  int tile_columns() const { return (partial.film.width() + tile_size - 1) / tile_size; }
   /// The tile of a pixel.
   int tile_of(int x, int y) const { return y / tile_size * tile_columns() + x / tile_size; }
-  int tile_count() const { return tile_count(so_far.film.width(), so_far.film.height()); }
+  int tile_count() const { return tile_count(partial.film.width(), partial.film.height()); }
 
   static constexpr size_t bytes_per_pixel(bool adaptive, bool has_alpha, size_t light_layers = 0,
                                           bool has_splats = false) {
     // Guides, the plan, and which samples come next.
     const size_t guiding =
-        Film::halves * (SampleGuide::bytes_per_pixel() + sizeof(uint16_t) + sizeof(uint32_t));
+        Film::halves * (SampleStatistics::bytes_per_pixel() + sizeof(uint16_t) + sizeof(uint32_t));
     const size_t splats = has_splats ? Film::splat_bytes_per_pixel() : 0;
     return (1 + light_layers) * (Film::bytes_per_pixel() + splats) +
            (has_alpha ? Film::alpha_bytes_per_pixel() : 0) + (adaptive ? guiding : 0);
@@ -54,22 +55,22 @@ struct RenderState {
   /// Whether a render of a picture, or crop, of this size can go on from it.
   bool fits(int width, int height, bool adaptive, bool has_alpha,
             std::span<const std::string> light_layers = {}, bool has_splats = false) const {
-    return std::equal(so_far.light.begin(), so_far.light.end(), light_layers.begin(), light_layers.end(),
+    return std::equal(partial.light.begin(), partial.light.end(), light_layers.begin(), light_layers.end(),
                       [](const LightFilm& part, const std::string& layer) { return part.layer == layer; }) &&
-           so_far.film.width() == width && so_far.film.height() == height &&
-           so_far.film.has_alpha() == has_alpha && so_far.film.has_splats() == has_splats &&
+           partial.film.width() == width && partial.film.height() == height &&
+           partial.film.has_alpha() == has_alpha && partial.film.has_splats() == has_splats &&
            guides[0].bytes().empty() == !adaptive;
   }
 
-  RenderResult so_far;                           ///< `reason` and `error` are not known yet
-  std::array<SampleGuide, Film::halves> guides;  ///< empty without adaptive sampling
-  SamplesDrawn drawn;                            ///< which samples come next
-  std::vector<TileLight> light;                  ///< by tile, of the samples that all pixels get alike
-  uint32_t done = 0;                             ///< samples a pixel of all complete passes
-  uint32_t looked_at = 0;                        ///< `done` when the error was last looked at
-  SamplePlan pass;                               ///< the one that is under way; of no samples: none is
-  std::vector<uint32_t> parts;                   ///< how much of it each tile has done, in samples a pixel
-  uint64_t light_batches = 0;                    ///< of light paths (render/light_pass.h) that are done
+  RenderResult partial;                               ///< `reason` and `error` are not known yet
+  std::array<SampleStatistics, Film::halves> guides;  ///< empty without adaptive sampling
+  SamplesDrawn drawn;                                 ///< which samples come next
+  std::vector<TileLight> light;                       ///< by tile, of the samples that all pixels get alike
+  uint32_t completed_spp = 0;                         ///< samples a pixel of all complete passes
+  uint32_t last_checked_spp = 0;                      ///< `completed_spp` when the error was last estimated
+  SamplePlan pass;                                    ///< the one that is under way; of no samples: none is
+  std::vector<uint32_t> tile_progress;  ///< how much of it each tile has done, in samples a pixel
+  uint64_t light_batches = 0;           ///< of light paths (render/light_pass.h) that are done
 };
 
 /// Of tiles whose samples are spread evenly over their pixels, to which the light paths of a film add theirs.

@@ -43,9 +43,9 @@ struct SamplesDrawn {
 /// What one half of a film has learnt from samples that every pixel gets alike; plans for the other half are
 /// made from it. Were plans made from all samples, luck would travel back: a lucky half sends samples to the
 /// other, whose finds send samples back to dilute the luck, while an unlucky pair keeps what it has.
-class SampleGuide {
+class SampleStatistics {
  public:
-  SampleGuide(int width, int height) : width_(width), height_(height), cells_(size_t(width) * height) {}
+  SampleStatistics(int width, int height) : width_(width), height_(height), cells_(size_t(width) * height) {}
 
   int width() const { return width_; }
 
@@ -66,9 +66,9 @@ class SampleGuide {
   /// How strongly the image's relative error depends on each pixel's number of samples: the spread of a
   /// single sample over sqrt(r^2 + 0.01), root mean square over 3 x 3 pixels, since one pixel's own figure is
   /// too noisy to act on and a neighbour's surprise is a warning.
-  std::vector<float> needs() const;
-  /// What that takes: of each pixel by itself, and with its neighbours.
-  static constexpr size_t needs_bytes_per_pixel() { return 2 * sizeof(float); }
+  std::vector<float> error_weights() const;
+  /// What that takes: of each pixel by itself, and with its neighbors.
+  static constexpr size_t error_weights_bytes_per_pixel() { return 2 * sizeof(float); }
 
   /// All that is known, to be stored and read back on the same kind of machine.
   std::span<const std::byte> bytes() const { return std::as_bytes(std::span(cells_)); }
@@ -88,7 +88,7 @@ class SampleGuide {
     const auto n = float(cell.count);
     return (cell.sum_of_squares - cell.sum * cell.sum / n) / (n - 1);
   }
-  static float squared_need(const Cell& cell);
+  static float squared_error_weight(const Cell& cell);
 
   int width_, height_;
   ZeroedVector<Cell> cells_;
@@ -122,8 +122,8 @@ class SamplePlan {
   /// number for one half depends on the other half's guide only, and the size of the plan on neither, so that
   /// neither half's mean is biased by its own luck (Kirk and Arvo 1991, "Unbiased Sampling Techniques for
   /// Image Synthesis"). So what pixels in need cannot take goes to the others, evenly.
-  static SamplePlan adaptive(const SamplesDrawn& drawn, std::span<const SampleGuide, Film::halves> guides,
-                             uint32_t size);
+  static SamplePlan adaptive(const SamplesDrawn& drawn,
+                             std::span<const SampleStatistics, Film::halves> guides, uint32_t size);
 
   /// What adaptive() takes beside its result while it runs.
   static size_t planning_bytes_per_pixel();

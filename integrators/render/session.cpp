@@ -99,7 +99,7 @@ class RenderSession::State {
   const LightSorter sorter;
   const std::optional<LightPaths> light_paths;
   RenderState render;
-  RenderHooks hooks;
+  RenderCallbacks callbacks;
   std::atomic<std::thread::id> user{};  ///< the thread in a call; none: std::thread::id()
 };
 
@@ -143,22 +143,22 @@ void RenderSession::set_limits(const RenderLimits& limits) {
 
 void RenderSession::on_progress(std::function<void(const RenderProgress&)> observe) {
   const Use use(state_->user);
-  state_->hooks.observe = std::move(observe);
+  state_->callbacks.on_progress = std::move(observe);
 }
 
 void RenderSession::on_checkpoint(std::function<void()> save, double seconds) {
   const Use use(state_->user);
-  state_->hooks.save = nullptr;
-  if (save) state_->hooks.save = [save = std::move(save)](const RenderState&) { save(); };
-  state_->hooks.save_interval = seconds;
+  state_->callbacks.on_checkpoint = nullptr;
+  if (save) state_->callbacks.on_checkpoint = [save = std::move(save)](const RenderState&) { save(); };
+  state_->callbacks.checkpoint_interval = seconds;
 }
 
 void RenderSession::on_preview(std::function<void()> show, double seconds, std::atomic<bool>* now) {
   const Use use(state_->user);
-  state_->hooks.preview = nullptr;
-  if (show) state_->hooks.preview = [show = std::move(show)](const RenderState&) { show(); };
-  state_->hooks.preview_interval = seconds;
-  state_->hooks.now = now;
+  state_->callbacks.on_preview = nullptr;
+  if (show) state_->callbacks.on_preview = [show = std::move(show)](const RenderState&) { show(); };
+  state_->callbacks.preview_interval = seconds;
+  state_->callbacks.now = now;
 }
 
 StopReason RenderSession::run(const std::atomic<bool>& stop) {
@@ -167,8 +167,8 @@ StopReason RenderSession::run(const std::atomic<bool>& stop) {
   State& s = *state_;
   const LightPaths* light_paths = s.light_paths ? &*s.light_paths : nullptr;
   vernier::render({*s.scene, s.camera, *s.integrator, s.settings, s.backdrop, s.sorter, light_paths},
-                  s.render, stop, s.hooks);
-  return s.render.so_far.reason;
+                  s.render, stop, s.callbacks);
+  return s.render.partial.reason;
 }
 
 StopReason RenderSession::run() {
@@ -212,9 +212,9 @@ std::vector<Notice> RenderSession::load(const std::string& path) {
                 "is damaged: what it holds is not of the size that it says; use another checkpoint or render "
                 "from the beginning");
   state_->render = std::move(*checkpoint.state);
-  RenderResult& so_far = state_->render.so_far;
-  so_far.error = estimate_error(so_far.film);
-  so_far.missing = estimate_missing(state_->render.light, so_far.film);
+  RenderResult& partial = state_->render.partial;
+  partial.error = estimate_error(partial.film);
+  partial.missing = estimate_missing(state_->render.light, partial.film);
   return notices;
 }
 
@@ -225,18 +225,18 @@ void RenderSession::set_moments(Moments moments) {
 
 RenderStatus RenderSession::status() const {
   const Use use(state_->user);
-  return status_of(state_->render.so_far);
+  return status_of(state_->render.partial);
 }
 
 LayeredImage RenderSession::picture(const std::string& layers) const {
   const Use use(state_->user);
-  const RenderResult& so_far = state_->render.so_far;
+  const RenderResult& partial = state_->render.partial;
   const RenderSettings& settings = state_->settings;
-  LayeredImage picture = with_layers(so_far, find_layers(layers), *state_->scene, state_->camera, settings,
+  LayeredImage picture = with_layers(partial, find_layers(layers), *state_->scene, state_->camera, settings,
                                      state_->moments ? &*state_->moments : nullptr);
   if (settings.crop.width > 0)
     picture.place = {settings.crop.x, settings.crop.y, settings.width, settings.height};
-  picture.metadata.merge(result_metadata(so_far));
+  picture.metadata.merge(result_metadata(partial));
   return picture;
 }
 
@@ -246,6 +246,6 @@ void RenderSession::write(const std::string& path, const std::string& layers) co
   write_picture(path, picture(layers));
 }
 
-const RenderResult& RenderSession::result() const { return state_->render.so_far; }
+const RenderResult& RenderSession::result() const { return state_->render.partial; }
 
 }  // namespace vernier

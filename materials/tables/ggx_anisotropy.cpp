@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "materials/fresnel.h"
-#include "materials/tables/ggx_coordinates.h"
+#include "materials/tables/albedo_table_mapping.h"
 #include "materials/tables/ggx_integral.h"
 
 namespace vernier {
@@ -25,7 +25,7 @@ float slice_width(const Ggx& ggx, float cos_phi, float sin_phi) {
 }
 
 GgxAlbedo mix(float t, const GgxAlbedo& a, const GgxAlbedo& b) {
-  return {lerp(t, a.missing, b.missing), lerp(t, a.bias, b.bias)};
+  return {lerp(t, a.energy_loss, b.energy_loss), lerp(t, a.schlick_bias, b.schlick_bias)};
 }
 
 /// Where a number falls between nodes.
@@ -49,8 +49,8 @@ Place place_width(float alpha) {
   return {index, (a * a - low) / (high - low)};
 }
 
-/// Albedos of one pair of widths; `bias` is in excess of a smooth surface's. Azimuths of the first quarter,
-/// which the others mirror.
+/// Albedos of one pair of widths; `schlick_bias` is in excess of a smooth surface's. Azimuths of the first
+/// quarter, which the others mirror.
 class PairTable {
  public:
   /// `coordinate`: albedo_coordinate() of the cosine and the width of the slice at `azimuth`.
@@ -87,8 +87,8 @@ class PairTable {
         const auto [i, u] = place(albedo_coordinate(z, alpha), cosines);
         const GgxAlbedo middle = mix(u, nodes_[j][i], nodes_[j][i + 1]);
         const double area = weight * (double(high) * high - double(low) * low);
-        missing += area * middle.missing;
-        bias += area * (middle.bias + (1 - middle.missing) * schlick_weight(z));
+        missing += area * middle.energy_loss;
+        bias += area * (middle.schlick_bias + (1 - middle.energy_loss) * schlick_weight(z));
       }
     }
     average_ = {float(missing), float(bias)};
@@ -124,7 +124,7 @@ GgxAlbedo anisotropic_albedo(const Vec3f& w, const Ggx& ggx) {
   GgxAlbedo result = over_widths(ggx, [&](int i, int j) {
     return i >= j ? pair_table(i, j).at(x, azimuth) : pair_table(j, i).at(x, pi / 2 - azimuth);
   });
-  result.bias += (1 - result.missing) * schlick_weight(w.z);
+  result.schlick_bias += (1 - result.energy_loss) * schlick_weight(w.z);
   return result;
 }
 

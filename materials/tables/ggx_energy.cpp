@@ -5,8 +5,8 @@
 
 #include "materials/fresnel.h"
 #include "materials/ggx.h"
+#include "materials/tables/albedo_table_mapping.h"
 #include "materials/tables/ggx_anisotropy.h"
-#include "materials/tables/ggx_coordinates.h"
 #include "materials/tables/ggx_integral.h"
 
 namespace vernier {
@@ -22,7 +22,7 @@ float width_position(float alpha) { return (std::sqrt(alpha) - least_roughness()
 float width_at(float position) { return square(lerp(position, least_roughness(), 1)); }
 
 GgxAlbedo mix(float t, const GgxAlbedo& a, const GgxAlbedo& b) {
-  return {lerp(t, a.missing, b.missing), lerp(t, a.bias, b.bias)};
+  return {lerp(t, a.energy_loss, b.energy_loss), lerp(t, a.schlick_bias, b.schlick_bias)};
 }
 
 template <size_t N>
@@ -43,7 +43,7 @@ struct Table {
     const int index = std::min(int(row), widths - 2);
     GgxAlbedo result =
         mix(row - float(index), interpolate(directional[index], x), interpolate(directional[index + 1], x));
-    result.bias += (1 - result.missing) * schlick_weight(cos_theta);
+    result.schlick_bias += (1 - result.energy_loss) * schlick_weight(cos_theta);
     return result;
   }
 };
@@ -56,8 +56,8 @@ GgxAlbedo average(const Table& table, float alpha) {
                 high = albedo_cosine(float(s + 1) / steps, alpha);
     const GgxAlbedo middle = table.albedo((low + high) / 2, alpha);
     const double weight = double(high) * high - double(low) * low;
-    missing += weight * middle.missing;
-    bias += weight * middle.bias;
+    missing += weight * middle.energy_loss;
+    bias += weight * middle.schlick_bias;
   }
   return {float(missing), float(bias)};
 }

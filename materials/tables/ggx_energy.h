@@ -6,13 +6,15 @@
 namespace vernier {
 
 /// How much of the light a GGX reflection lobe returns after one bounce on its facets, split so that any
-/// Schlick reflectance follows: f0 (1 - missing - bias) + f90 bias (Karis 2013, "Real Shading in Unreal
-/// Engine 4", environment BRDF). With reflectance 1 it is 1 - missing.
+/// Schlick reflectance follows: f0 (1 - energy_loss - schlick_bias) + f90 schlick_bias (Karis 2013, "Real
+/// Shading in Unreal Engine 4", environment BRDF). With reflectance 1 it is 1 - energy_loss.
 struct GgxAlbedo {
-  float missing = 0;  ///< blocked by other facets
-  float bias = 0;
+  float energy_loss = 0;  ///< blocked by other facets
+  float schlick_bias = 0;
 
-  Rgb with(const Rgb& f0, const Rgb& f90) const { return f0 * (1 - missing - bias) + f90 * bias; }
+  Rgb with(const Rgb& f0, const Rgb& f90) const {
+    return f0 * (1 - energy_loss - schlick_bias) + f90 * schlick_bias;
+  }
 };
 
 /// Directional albedo at cos_theta in [0,1] for width alpha in [0,1], from a table integrated at first use

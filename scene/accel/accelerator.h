@@ -22,10 +22,10 @@ struct RawHit {
   uint32_t instance = 0, primitive = 0;
 };
 
-/// Whether the hit is on a triangle that the ray leaves or reaches, and so is none.
-inline bool is_at_end(const Ray& ray, const RawHit& hit) {
+/// Whether the hit is on the triangle that the ray starts on or aims at, and must be ignored.
+inline bool is_endpoint_triangle(const Ray& ray, const RawHit& hit) {
   const TriangleId met{hit.instance, hit.primitive};
-  return met == ray.leaves || met == ray.reaches;
+  return met == ray.origin_triangle || met == ray.target_triangle;
 }
 
 /// Decides whether a hit counts (alpha coverage). Must be a pure function of its arguments and callable from

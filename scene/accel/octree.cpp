@@ -14,7 +14,7 @@ constexpr unsigned leaf_size = 32;  ///< triangles a cell may hold undivided
 constexpr unsigned max_depth = 20;
 constexpr size_t parallel_size = 1 << 12;  ///< below this many triangles a task costs more than it saves
 
-/// A cell. Its middle is computed in one way everywhere and inherited by its octants, so neighbours of any
+/// A cell. Its middle is computed in one way everywhere and inherited by its octants, so neighbors of any
 /// size have the same plane between them and no ray passes between cells.
 struct Cell {
   Vec3f lower, upper;

@@ -39,7 +39,8 @@ class TwoLevel : public Accelerator {
   AcceleratorStats stats() const override { return stats_; }
 
   /// After vertices have moved: new boxes for the same trees. Answers stay right however far the vertices
-  /// went, but rays slow down as the trees fit worse. Triangles that could not be hit at the build stay away.
+  /// went, but rays slow down as the trees fit worse. Triangles that were left out of the build, because no
+  /// ray could hit them, stay left out.
   void refit();
 
  private:
@@ -206,7 +207,7 @@ bool TwoLevel<Structure, Test, Moving>::search(const Triangles& structure, const
         const auto lane = lowest(lanes);
         const RawHit hit{found.t[lane], found.u[lane], found.v[lane],
                          placed ? placed->instance : block.instance[lane], block.primitive[lane]};
-        if (is_at_end(world, hit)) continue;
+        if (is_endpoint_triangle(world, hit)) continue;
         const bool filtered = geometry.filter && geometry.instances[hit.instance].filtered;
         if (filtered && !geometry.filter->accept(world, hit)) continue;
         if (hits.offer(hit)) return true;

@@ -24,7 +24,7 @@ T load(const uint8_t* from) {
   return value;
 }
 
-/// One component as a float (glTF 2.0, 3.6.2.3 for the normalised ones).
+/// One component as a float (glTF 2.0, 3.6.2.3 for the normalized ones).
 template <typename T, bool normalized>
 float to_float(T value) {
   if constexpr (std::is_same_v<T, float> || !normalized) return float(value);

@@ -18,13 +18,13 @@ constexpr const char* extension_name = "EXT_lights_image_based";
 /// Linear radiance of a face. Four channels are RGBD: colour over alpha (HDR Images, RGBD).
 Image to_radiance(const Image8& pixels) {
   Image face(pixels.width, pixels.height, 3);
-  const auto is_grey = pixels.channels < 3;
+  const auto is_gray = pixels.channels < 3;
   for (int y = 0; y < face.height; ++y)
     for (int x = 0; x < face.width; ++x) {
       const uint8_t* texel = pixels.pixel(x, y);
       const float divisor = pixels.channels == 4 ? float(texel[3]) / 255 : 1;
       for (int c = 0; c < 3; ++c) {
-        const float light = srgb_to_linear(float(texel[is_grey ? 0 : c]) / 255);
+        const float light = srgb_to_linear(float(texel[is_gray ? 0 : c]) / 255);
         face.pixel(x, y)[c] = divisor > 0 ? light / divisor : 0;
       }
     }

@@ -14,10 +14,6 @@ namespace vernier {
 namespace {
 
 void check_positions(const PrimitiveData& data, const std::vector<Vec3f>& positions) {
-  // x - x is 0 for finite x, else NaN.
-  float sum = 0;
-  for (const auto& p : positions) sum += (p.x - p.x) + (p.y - p.y) + (p.z - p.z);
-  if (sum == 0) return;
   for (size_t i = 0; i < positions.size(); ++i)
     if (!is_finite(positions[i]))
       data.fail("/attributes/POSITION", fmt::format("position {} is not finite: ({}, {}, {})", i,

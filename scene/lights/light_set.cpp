@@ -19,7 +19,7 @@ float irradiance(const Light& light) {
 }  // namespace
 
 LightSet::LightSet(std::vector<std::unique_ptr<Light>> lights)
-    : lights_(std::move(lights)), place_(lights_.size(), -1) {
+    : lights_(std::move(lights)), infinite_slot_(lights_.size(), -1) {
   std::vector<LightBounds> bounds(lights_.size());  // of no power: not in the tree
   std::vector<float> irradiances;
   for (size_t i = 0; i < lights_.size(); ++i) {
@@ -28,7 +28,7 @@ LightSet::LightSet(std::vector<std::unique_ptr<Light>> lights)
       bounds[i] = *b;
       continue;
     }
-    place_[i] = int32_t(infinite_lights_.size());
+    infinite_slot_[i] = int32_t(infinite_lights_.size());
     infinite_lights_.push_back(lights_[i].get());
     irradiances.push_back(irradiance(*lights_[i]));
   }
@@ -62,7 +62,8 @@ float LightSet::prob(const LightReceiver& receiver, size_t i) const {
   if (is_single_) return 1;
   const LightTree::Weights weights = tree_.weigh(receiver);
   const double share = finite_share(weights);
-  if (place_[i] >= 0) return infinite_.empty() ? 0 : float(infinite_.prob(size_t(place_[i])) * (1 - share));
+  if (infinite_slot_[i] >= 0)
+    return infinite_.empty() ? 0 : float(infinite_.prob(size_t(infinite_slot_[i])) * (1 - share));
   return float(tree_.prob(receiver, weights, uint32_t(i)) * share);
 }
 

@@ -45,9 +45,9 @@ class LightSet {
   std::vector<const Light*> delta_lights_;
   bool is_single_ = false;  ///< there is one light, and nothing to choose
   std::vector<const Light*> infinite_lights_;
-  AliasTable infinite_;         ///< over infinite_lights_, by irradiance
-  std::vector<int32_t> place_;  ///< by light: index in infinite_lights_, or -1
-  LightTree tree_;              ///< over all others
+  AliasTable infinite_;                 ///< over infinite_lights_, by irradiance
+  std::vector<int32_t> infinite_slot_;  ///< by light: index in infinite_lights_, or -1
+  LightTree tree_;                      ///< over all others
 };
 
 }  // namespace vernier

@@ -98,7 +98,7 @@ TriangleLight::Shape TriangleLight::shape_at(float time) const {
   return shape;
 }
 
-bool TriangleLight::join(const TriangleLight& other) {
+bool TriangleLight::try_merge_quad(const TriangleLight& other) {
   if (!even_ || moments_ > 0 || shape_.opposite || other.shape_.opposite) return false;
   for (size_t i = 0; i < 3; ++i)
     for (size_t j = 0; j < 3; ++j) {
@@ -192,7 +192,7 @@ std::optional<LightRay> TriangleLight::emit(const Bounds& /*scene*/, const Vec2d
   if (!(local.z > 0) || is_black(flux)) return std::nullopt;
   LightRay light{{offset_ray_origin(shape.at(at_place), shape.error, shape.normal, w), 0, w}, flux};
   light.ray.time = time;
-  light.ray.leaves = triangle_at(at_place);
+  light.ray.origin_triangle = triangle_at(at_place);
   return light;
 }
 

@@ -18,7 +18,7 @@ class TriangleLight : public Light {
 
   /// Takes in another triangle of the same instance if both make up such a parallelogram: one light, sampled
   /// as one, has less noise than two. False: nothing has changed.
-  bool join(const TriangleLight& other);
+  bool try_merge_quad(const TriangleLight& other);
 
   std::optional<LightSample> sample(const SurfacePoint& from, const Vec2d& u) const override;
   LightEval eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const override;

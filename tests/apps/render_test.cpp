@@ -55,7 +55,7 @@ TEST(Render, EveryIntegratorAndAcceleratorMakesAPicture) {
 }
 
 TEST(Render, EveryShowMakesAPicture) {
-  for (const auto& show : raycast_shows()) {
+  for (const auto& show : raycast_outputs()) {
     const Image image = rendered(two_spheres, {"--integrator", "raycast", "--show", std::string(show),
                                                "--size", "16x12", "--spp", "1"});
     EXPECT_GT(mean(image), 0.0) << show;

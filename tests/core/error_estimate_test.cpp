@@ -247,7 +247,7 @@ TEST(ErrorEstimate, FireflyIsFlaggedAndInTheInterval) {
   EXPECT_GT(estimate.high, error);
   const ErrorLayers layers = error_layers(film), before = error_layers(without);
   EXPECT_EQ(*layers.unreliable.pixel(x, y), 1);
-  // One such pixel says nothing against its neighbours.
+  // One such pixel says nothing against its neighbors.
   EXPECT_LT(estimate.unreliable, 0.01);
   for (const int apart : {1, 3})
     EXPECT_NEAR(layers.standard_error.pixel(x + apart, y)[0], before.standard_error.pixel(x + apart, y)[0],

@@ -117,7 +117,7 @@ TEST(Warp, StaysInItsDomainAtTheEdges) {
 }
 
 TEST(Warp, DiskIsContinuousAcrossItsWedges) {
-  // Neighbours in the square stay neighbours: the concentric map stretches lengths by at most pi / 2 of the
+  // Neighbours in the square stay neighbors: the concentric map stretches lengths by at most pi / 2 of the
   // scale 2.
   constexpr int n = 400;
   for (int i = 0; i < n; ++i)

@@ -71,9 +71,11 @@ class CheckpointMutation : public testing::Test {
     CameraDescription view;
     view.to_world.origin = {0, 1, 0.95f};
     camera_.emplace(view, options_.width, options_.height);
-    RenderHooks hooks;
-    hooks.save = [&](const RenderState& state) { write_checkpoint(file_, {{"seed", "1"}}, state); };
-    render(scene_, *camera_, *integrator_, options_, stop_, std::move(hooks));
+    RenderCallbacks callbacks;
+    callbacks.on_checkpoint = [&](const RenderState& state) {
+      write_checkpoint(file_, {{"seed", "1"}}, state);
+    };
+    render(scene_, *camera_, *integrator_, options_, stop_, std::move(callbacks));
     bytes_ = read_file(file_);
   }
 

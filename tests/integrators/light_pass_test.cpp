@@ -41,14 +41,14 @@ class LightPassTest : public testing::Test {
     const LightSorter sorter(settings_.light_split, scene_);
     return {part.width, part.height, settings_.adaptive, false, sorter.layers(), true};
   }
-  RenderState go_on(RenderState state, RenderHooks hooks = {}) const {
+  RenderState go_on(RenderState state, RenderCallbacks callbacks = {}) const {
     const Camera camera(camera_at({0, 1.5f, 4}, {0, 0.3f, 0}, 0.6f), settings_.width, settings_.height);
     const auto integrator = make_integrator(settings_.integrator, settings_.integrator_options);
     const LightSorter sorter(settings_.light_split, scene_);
     const auto paths = light_paths_of(scene_, camera, *integrator, settings_, sorter);
     const std::atomic<bool> stop = false;
     render({scene_, camera, *integrator, settings_, Backdrop(settings_), sorter, paths ? &*paths : nullptr},
-           state, stop, std::move(hooks));
+           state, stop, std::move(callbacks));
     return state;
   }
 
@@ -70,33 +70,33 @@ bool same_bytes(const A& a, const B& b) {
 
 void expect_same(const RenderState& a, const RenderState& b) {
   EXPECT_EQ(a.light_batches, b.light_batches);
-  EXPECT_TRUE(same_bytes(a.so_far.film.bytes(), b.so_far.film.bytes()));
-  EXPECT_TRUE(same_bytes(a.so_far.film.splat_bytes(), b.so_far.film.splat_bytes()));
-  EXPECT_EQ(a.so_far.film.light_paths(), b.so_far.film.light_paths());
-  EXPECT_EQ(a.so_far.rays.bounce, b.so_far.rays.bounce);
-  EXPECT_NEAR(a.so_far.missing.bent.share, b.so_far.missing.bent.share, 1e-6);  // sums of floats
-  ASSERT_EQ(a.so_far.light.size(), b.so_far.light.size());
-  for (size_t i = 0; i < a.so_far.light.size(); ++i)
-    EXPECT_TRUE(same_bytes(a.so_far.light[i].film.splat_bytes(), b.so_far.light[i].film.splat_bytes()));
+  EXPECT_TRUE(same_bytes(a.partial.film.bytes(), b.partial.film.bytes()));
+  EXPECT_TRUE(same_bytes(a.partial.film.splat_bytes(), b.partial.film.splat_bytes()));
+  EXPECT_EQ(a.partial.film.light_paths(), b.partial.film.light_paths());
+  EXPECT_EQ(a.partial.rays.bounce, b.partial.rays.bounce);
+  EXPECT_NEAR(a.partial.missing.bent.share, b.partial.missing.bent.share, 1e-6);  // sums of floats
+  ASSERT_EQ(a.partial.light.size(), b.partial.light.size());
+  for (size_t i = 0; i < a.partial.light.size(); ++i)
+    EXPECT_TRUE(same_bytes(a.partial.light[i].film.splat_bytes(), b.partial.light[i].film.splat_bytes()));
 }
 
 TEST_F(LightPassTest, SameForAnyNumberOfThreadsAndFromAnyState) {
   std::vector<RenderState> states;
   std::optional<ThreadLimit> threads(1);
-  RenderHooks hooks;
-  hooks.save_interval = 0;
-  hooks.save = [&](const RenderState& state) { states.push_back(state); };
-  const RenderState whole = go_on(begin(), std::move(hooks));
+  RenderCallbacks callbacks;
+  callbacks.checkpoint_interval = 0;
+  callbacks.on_checkpoint = [&](const RenderState& state) { states.push_back(state); };
+  const RenderState whole = go_on(begin(), std::move(callbacks));
   EXPECT_EQ(whole.light_batches, light_batches(40));
-  EXPECT_EQ(whole.so_far.film.light_paths()[0], whole.light_batches / 2 * LightPass::batch_size);
-  EXPECT_EQ(whole.so_far.film.light_paths()[1], whole.so_far.film.light_paths()[0]);
+  EXPECT_EQ(whole.partial.film.light_paths()[0], whole.light_batches / 2 * LightPass::batch_size);
+  EXPECT_EQ(whole.partial.film.light_paths()[1], whole.partial.film.light_paths()[0]);
   threads.emplace(3);
   expect_same(go_on(begin()), whole);
   const TemporaryFolder folder;
   const std::string file = folder.file("checkpoint");
   size_t within_light = 0;
   for (size_t i = 0; i < states.size(); i += 5) {
-    within_light += states[i].light_batches > light_batches(states[i].done);
+    within_light += states[i].light_batches > light_batches(states[i].completed_spp);
     write_checkpoint(file, {{"scene", "test"}}, states[i]);
     expect_same(go_on(*read_checkpoint(file).state), whole);
   }
@@ -118,14 +118,15 @@ TEST_F(LightPassTest, CropsGetTheSameSplats) {
   for (int y = 0; y < 12; ++y)
     for (int x = 0; x < 20; ++x)
       for (int half = 0; half < Film::halves; ++half)
-        ASSERT_EQ(part.so_far.film.splat_mean(x, y, half), whole.so_far.film.splat_mean(x + 7, y + 5, half));
+        ASSERT_EQ(part.partial.film.splat_mean(x, y, half),
+                  whole.partial.film.splat_mean(x + 7, y + 5, half));
 }
 
 // Light kept apart adds up to the picture, and the lamp's comes by the lamp alone.
 TEST_F(LightPassTest, PartsAddUp) {
   const auto ways_there_are = light_way_names();
   settings_.light_split = {{ways_there_are.begin(), ways_there_are.end()}, {{"lamps", {"lamp"}}}};
-  const RenderResult result = go_on(begin()).so_far;
+  const RenderResult result = go_on(begin()).partial;
   Vec3d splats(0, 0, 0);
   for (int y = 0; y < 24; ++y)
     for (int x = 0; x < 40; ++x) {
@@ -176,13 +177,13 @@ TEST_F(LightPassTest, ErrorCoversSplats) {
     settings_.integrator = integrator;
     settings_.limits.spp = 64 * 50;
     settings_.seed = 1000;
-    const Image truth = go_on(begin()).so_far.film.image();
+    const Image truth = go_on(begin()).partial.film.image();
     settings_.limits.spp = 64;
     int covered = 0;
     Samples told, true_error;
     for (uint64_t seed = 1; seed <= 40; ++seed) {
       settings_.seed = seed;
-      const RenderResult result = go_on(begin()).so_far;
+      const RenderResult result = go_on(begin()).partial;
       told.add(square(relative_difference(result.film, truth)));
       true_error.add(square(relative_error(result.film, truth)));
       covered += relative_error(result.film, truth) <= result.error.high;

@@ -40,7 +40,7 @@ TEST(Raycast, TextbookBarycentrics) {
 
 TEST(Raycast, EveryNameShowsSomething) {
   const Scene scene = textbook_triangle();
-  for (const std::string_view name : raycast_shows())
+  for (const std::string_view name : raycast_outputs())
     EXPECT_FALSE(is_black(show(scene, std::string(name), ray_through({2, 2, -4}, {2, 2, 0})))) << name;
 }
 

@@ -219,13 +219,13 @@ TEST(Render, GoesOnWhileTheObserverIsStuck) {
   const std::atomic<bool> stop = false;
   std::promise<void> rendered;
   bool was_told = false, was_freed = false;
-  RenderHooks hooks;
-  hooks.observe = [&, waiting = rendered.get_future().share()](const RenderProgress&) {
+  RenderCallbacks callbacks;
+  callbacks.on_progress = [&, waiting = rendered.get_future().share()](const RenderProgress&) {
     was_told = true;
     was_freed = waiting.wait_for(std::chrono::minutes(2)) == std::future_status::ready;
   };
-  hooks.save = [&](const RenderState&) { rendered.set_value(); };
-  render(nothing, camera, Fireflies(0.5f), options, stop, std::move(hooks));
+  callbacks.on_checkpoint = [&](const RenderState&) { rendered.set_value(); };
+  render(nothing, camera, Fireflies(0.5f), options, stop, std::move(callbacks));
   EXPECT_TRUE(was_told);
   EXPECT_TRUE(was_freed);
 }
@@ -240,12 +240,12 @@ TEST(Render, GoesOnWhenTheObserverThrows) {
   const Camera camera(camera_description(), options.width, options.height);
   const std::atomic<bool> stop = false;
   int told = 0;
-  RenderHooks hooks;
-  hooks.observe = [&](const RenderProgress&) {
+  RenderCallbacks callbacks;
+  callbacks.on_progress = [&](const RenderProgress&) {
     ++told;
     throw std::runtime_error("the pipe is closed");
   };
-  EXPECT_EQ(render(nothing, camera, Fireflies(0.5f), options, stop, std::move(hooks)).reason,
+  EXPECT_EQ(render(nothing, camera, Fireflies(0.5f), options, stop, std::move(callbacks)).reason,
             StopReason::time);
   EXPECT_EQ(told, 1);
 }

@@ -37,23 +37,23 @@ class Resume : public testing::Test {
     camera_.emplace(view, options_.width, options_.height);
   }
 
-  RenderResult run(RenderHooks hooks = {}) {
+  RenderResult run(RenderCallbacks callbacks = {}) {
     stop_ = false;
-    return render(scene_, *camera_, *integrator_, options_, stop_, std::move(hooks));
+    return render(scene_, *camera_, *integrator_, options_, stop_, std::move(callbacks));
   }
   RenderResult go_on(const RenderState& state) {
     RenderState further = state;
     stop_ = false;
     vernier::render({scene_, *camera_, *integrator_, options_, Backdrop(options_), LightSorter({}, scene_)},
                     further, stop_);
-    return std::move(further.so_far);
+    return std::move(further.partial);
   }
   /// The state at the end of a render.
   RenderState last_state() {
     std::optional<RenderState> last;
-    RenderHooks hooks;
-    hooks.save = [&](const RenderState& state) { last = state; };
-    run(std::move(hooks));
+    RenderCallbacks callbacks;
+    callbacks.on_checkpoint = [&](const RenderState& state) { last = state; };
+    run(std::move(callbacks));
     return *last;
   }
 
@@ -83,10 +83,10 @@ TEST_F(Resume, SameFromAnyTile) {
     options_.adaptive = adaptive;
     std::optional<ThreadLimit> one_thread(1);
     std::vector<RenderState> states;
-    RenderHooks hooks;
-    hooks.save_interval = 0;
-    hooks.save = [&](const RenderState& state) { states.push_back(state); };
-    const RenderResult whole = run(std::move(hooks));
+    RenderCallbacks callbacks;
+    callbacks.checkpoint_interval = 0;
+    callbacks.on_checkpoint = [&](const RenderState& state) { states.push_back(state); };
+    const RenderResult whole = run(std::move(callbacks));
     expect_same(run(), whole, "not saved");
     ASSERT_EQ(states.size(), 1 + 6 * 6u);  // six passes of six tiles, and the end
     one_thread.reset();
@@ -107,11 +107,11 @@ TEST_F(Resume, LimitsMayGrow) {
     for (const int first : {1, 16, 21, 83}) {
       options_.limits.spp = first;
       const RenderState state = last_state();
-      EXPECT_NEAR(double(state.so_far.samples) / (36 * 20), first, 0.01 * first) << first;
+      EXPECT_NEAR(double(state.partial.samples) / (36 * 20), first, 0.01 * first) << first;
       options_.limits.spp = 90;
       const RenderResult resumed = go_on(state);
       expect_same(resumed, run(), "from " + std::to_string(first));
-      EXPECT_GT(resumed.seconds, state.so_far.seconds);
+      EXPECT_GT(resumed.seconds, state.partial.seconds);
     }
   }
 }
@@ -122,15 +122,15 @@ TEST_F(Resume, StoppedBySignalGoesOn) {
   for (const int cut : {2, 9, 14}) {
     int saves = 0;
     std::optional<RenderState> last;
-    RenderHooks hooks;
-    hooks.save_interval = 0;
-    hooks.save = [&](const RenderState& state) {
+    RenderCallbacks callbacks;
+    callbacks.checkpoint_interval = 0;
+    callbacks.on_checkpoint = [&](const RenderState& state) {
       last = state;
       if (++saves == cut) stop_ = true;
     };
-    const RenderResult stopped = run(std::move(hooks));
+    const RenderResult stopped = run(std::move(callbacks));
     ASSERT_EQ(stopped.reason, StopReason::interrupted);
-    EXPECT_EQ(stopped.samples, last->so_far.samples) << "nothing is lost";
+    EXPECT_EQ(stopped.samples, last->partial.samples) << "nothing is lost";
     EXPECT_LT(stopped.samples, whole.samples);
     expect_same(go_on(*last), whole, "cut " + std::to_string(cut));
   }
@@ -146,10 +146,10 @@ TEST_F(Resume, TargetIsLookedAtWhereItWouldHaveBeen) {
   const double spp = double(whole.samples) / (36 * 20);
   ASSERT_GT(spp, 40);
   std::vector<RenderState> states;
-  RenderHooks hooks;
-  hooks.save_interval = 0;
-  hooks.save = [&](const RenderState& state) { states.push_back(state); };
-  run(std::move(hooks));
+  RenderCallbacks callbacks;
+  callbacks.checkpoint_interval = 0;
+  callbacks.on_checkpoint = [&](const RenderState& state) { states.push_back(state); };
+  run(std::move(callbacks));
   for (size_t i = 0; i < states.size(); i += i + 8 < states.size() ? 3 : 1)
     expect_same(go_on(states[i]), whole, "state " + std::to_string(i));
   // It is enough already.
@@ -165,14 +165,14 @@ TEST_F(Resume, NothingIsRenderedWhenItIsEnough) {
   for (const int spp : {40, 33, 20, 1}) {
     options_.limits.spp = spp;
     const RenderResult result = go_on(state);
-    EXPECT_EQ(result.samples, state.so_far.samples);
+    EXPECT_EQ(result.samples, state.partial.samples);
     EXPECT_EQ(result.reason, StopReason::samples);
-    EXPECT_EQ(result.film.image().values, state.so_far.film.image().values);
+    EXPECT_EQ(result.film.image().values, state.partial.film.image().values);
   }
   options_.limits.spp = 400;
-  options_.limits.seconds = state.so_far.seconds / 2;
+  options_.limits.seconds = state.partial.seconds / 2;
   EXPECT_EQ(go_on(state).reason, StopReason::time);
-  EXPECT_EQ(go_on(state).samples, state.so_far.samples);
+  EXPECT_EQ(go_on(state).samples, state.partial.samples);
 }
 
 /// A checkpoint within a pass, in a file.
@@ -204,8 +204,8 @@ TEST_F(CheckpointFile, HoldsAll) {
   EXPECT_EQ(checkpoint.identity, identity_);
   const RenderState& state = *checkpoint.state;
   EXPECT_EQ(state.pass.size(), 16u);
-  EXPECT_EQ(state.done, 32u);
-  EXPECT_EQ(state.so_far.convergence.size(), 2u);
+  EXPECT_EQ(state.completed_spp, 32u);
+  EXPECT_EQ(state.partial.convergence.size(), 2u);
   options_.limits.spp = 70;
   expect_same(go_on(state), run(), "from a file");
   // The same file again.

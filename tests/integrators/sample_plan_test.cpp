@@ -20,7 +20,8 @@ constexpr int pixels = side * side;
 /// 1, all others 0.
 struct Seen {
   SamplesDrawn drawn{{8, 8}, std::vector<uint32_t>(size_t(pixels) * Film::halves)};
-  std::array<SampleGuide, Film::halves> guides{SampleGuide(side, side), SampleGuide(side, side)};
+  std::array<SampleStatistics, Film::halves> guides{SampleStatistics(side, side),
+                                                    SampleStatistics(side, side)};
 
   explicit Seen(int noisy) {
     for (int i = 0; i < pixels * 16; ++i) {
@@ -53,7 +54,8 @@ TEST(SamplePlan, HoldsAsManySamplesAsItSays) {
 TEST(SamplePlan, OfALargePictureHoldsWhatItSaysForAnyNumberOfThreads) {
   constexpr int width = 301, height = 199;
   SamplesDrawn drawn{{8, 8}, std::vector<uint32_t>(size_t(width) * height * Film::halves, 3)};
-  std::array<SampleGuide, Film::halves> guides{SampleGuide(width, height), SampleGuide(width, height)};
+  std::array<SampleStatistics, Film::halves> guides{SampleStatistics(width, height),
+                                                    SampleStatistics(width, height)};
   for (int i = 0; i < width * height * 16; ++i) {
     const int pixel = i / 16;
     const float value =
@@ -76,10 +78,10 @@ TEST(SamplePlan, OfALargePictureHoldsWhatItSaysForAnyNumberOfThreads) {
 TEST(SamplePlan, SpendsOnFewPixelsWhatTheyCanTake) {
   const SamplePlan half = Seen(pixels / 2).plan(16);
   EXPECT_EQ(half.count(20, 39, 0, 16), 2u);
-  const SamplePlan row = Seen(side).plan(16);  // a row, and the one beside it, whose neighbours warn it
+  const SamplePlan row = Seen(side).plan(16);  // a row, and the one beside it, whose neighbors warn it
   EXPECT_NEAR(row.count(20, 0, 0, 16), 2 + 0.75 * 8 * 20, 4);
   EXPECT_EQ(row.count(20, 20, 0, 16), 2u);
-  const SamplePlan corner = Seen(1).plan(16);  // and three neighbours
+  const SamplePlan corner = Seen(1).plan(16);  // and three neighbors
   EXPECT_NEAR(corner.count(0, 0, 0, 16), 512, 1);
   EXPECT_NEAR(corner.count(20, 20, 0, 16), 8 - 512. * 4 / pixels, 1);
 }

@@ -106,7 +106,7 @@ TEST(VisibleLight, SurroundingsCanBeReplaced) {
   auto picture = std::make_shared<Image>(1, 1, 3);
   picture->values = {1, 1, 1};
   bright->picture = picture;
-  scene.surround(bright);
+  scene.set_environment(bright);
   EXPECT_EQ(scene.lights().size(), 1u);
   EXPECT_EQ(seen(scene).lit, 1);
 }

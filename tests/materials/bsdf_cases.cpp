@@ -27,10 +27,10 @@ class CaseList {
   std::vector<BsdfCase> cases;
 };
 
-Glossy conductor(const Rgb& f0, const Ggx& widths) { return Glossy::metal({f0, 1, {}}, widths); }
+Glossy conductor(const Rgb& f0, const Ggx& widths) { return Glossy::conductor({f0, 1, {}}, widths); }
 
 Glossy plastic(const Rgb& diffuse, const Rgb& f0, float f90, const Ggx& widths) {
-  return Glossy::plastic({f0, f90, {}}, widths, {diffuse});
+  return Glossy::coated_diffuse({f0, f90, {}}, widths, {diffuse});
 }
 
 void add_conductors(CaseList& list) {
@@ -66,7 +66,7 @@ Fresnel fresnel(float eta, const Rgb& color = white) {
 }
 
 Dielectric thick(float eta, const Ggx& widths, const Rgb& tint, const Rgb& specular) {
-  return {eta, widths, tint, fresnel(eta, specular), false, &GlassEnergy::of(eta)};
+  return {eta, widths, tint, fresnel(eta, specular), false, &DielectricAlbedo::of(eta)};
 }
 
 BsdfCase& add_dielectric(CaseList& list, const std::string& name, float eta, const Ggx& widths,
@@ -129,15 +129,16 @@ void add_mixtures(CaseList& list) {
 void add_bodies(CaseList& list) {
   const Rgb f0(0.04f, 0.04f, 0.04f);
   for (const float r : {0.f, 0.3f}) {
-    BsdfCase& thin = list.add(fmt::format("leaf, roughness {}", r),
-                              Glossy::plastic({f0, 1, {}}, ggx(r), {white * 0.3f, white * 0.7f, 1}), ggx(r));
+    BsdfCase& thin =
+        list.add(fmt::format("leaf, roughness {}", r),
+                 Glossy::coated_diffuse({f0, 1, {}}, ggx(r), {white * 0.3f, white * 0.7f, 1}), ggx(r));
     thin.transmits = thin.lossless = true;
   }
-  list.add("plastic of coloured specular", Glossy::plastic({blue, 1, {}}, ggx(0.3f), {white, gold * 0.f, 1}),
-           ggx(0.3f));
+  list.add("plastic of coloured specular",
+           Glossy::coated_diffuse({blue, 1, {}}, ggx(0.3f), {white, gold * 0.f, 1}), ggx(0.3f));
   // Diffuse transmission beside clear glass: light is n^2 times as dense inside.
   const auto make = [&](float eta) {
-    return Mixture{Glossy::plastic({f0, 1, {}}, ggx(0.3f), {white * 0.5f, white * 0.5f, eta}),
+    return Mixture{Glossy::coated_diffuse({f0, 1, {}}, ggx(0.3f), {white * 0.5f, white * 0.5f, eta}),
                    thick(eta, ggx(0.3f), white, white), 0.4f};
   };
   for (const float eta : {1.5f, 1 / 1.5f}) {
@@ -151,15 +152,16 @@ void add_bodies(CaseList& list) {
 void add_films(CaseList& list) {
   const Rgb f0(0.04f, 0.04f, 0.04f);
   const ThinFilm thin{1, 1.3f, 400}, dense{0.7f, 2.5f, 120};
-  list.add("gold under film", Glossy::metal({gold, 1, thin}, ggx(0.3f)), ggx(0.3f));
+  list.add("gold under film", Glossy::conductor({gold, 1, thin}, ggx(0.3f)), ggx(0.3f));
   for (const float r : {0.f, 0.3f, 1.f})
     list.add(fmt::format("white plastic under film, roughness {}", r),
-             Glossy::plastic({f0, 1, thin}, ggx(r), {white}), ggx(r));
-  list.add("white plastic under dense film", Glossy::plastic({f0, 1, dense}, ggx(0.3f), {white}), ggx(0.3f));
+             Glossy::coated_diffuse({f0, 1, thin}, ggx(r), {white}), ggx(r));
+  list.add("white plastic under dense film", Glossy::coated_diffuse({f0, 1, dense}, ggx(0.3f), {white}),
+           ggx(0.3f));
   for (const float r : {0.f, 0.3f})
     for (const float eta : {1.5f, 1 / 1.5f}) {
       const auto make = [&](float index) {
-        return Dielectric{index, ggx(r), white, {f0, 1, thin}, false, &GlassEnergy::of(index)};
+        return Dielectric{index, ggx(r), white, {f0, 1, thin}, false, &DielectricAlbedo::of(index)};
       };
       BsdfCase& glass = list.add(fmt::format("glass under film, index {:.3f}, roughness {}", eta, r),
                                  make(eta), make(1 / eta), ggx(r));
@@ -175,7 +177,7 @@ void add_dispersion(CaseList& list) {
     Dispersion result{{1.4f, 1.5f, 1.6f}, {}};
     for (size_t c = 0; c < 3; ++c) {
       if (inverse) result.eta[c] = 1 / result.eta[c];
-      result.energy[c] = &GlassEnergy::of(result.eta[c]);
+      result.energy[c] = &DielectricAlbedo::of(result.eta[c]);
     }
     return result;
   };
@@ -202,7 +204,7 @@ void add_dispersion(CaseList& list) {
 void add_partly_matched_dispersion(CaseList& list) {
   static const auto dispersion_of = [](const std::array<float, 3>& eta) {
     Dispersion result{eta, {}};
-    for (size_t c = 0; c < 3; ++c) result.energy[c] = &GlassEnergy::of(eta[c]);
+    for (size_t c = 0; c < 3; ++c) result.energy[c] = &DielectricAlbedo::of(eta[c]);
     return result;
   };
   static const std::array<Dispersion, 2> sides{dispersion_of({1, 1.02f, 1.04f}),

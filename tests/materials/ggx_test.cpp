@@ -118,8 +118,8 @@ TEST(GgxEnergy, TableAgreesWithQuadrature) {
     for (const float cosine : {1e-3f, 0.004f, 0.01f, 0.03f, 0.07f, 0.2f, 0.5f, 0.85f, 1.f}) {
       const auto [total, grazing] = albedo({alpha, alpha}, direction(cosine, 0));
       const GgxAlbedo table = ggx_albedo(cosine, alpha);
-      EXPECT_NEAR(1 - table.missing, total, 7e-4) << alpha << " at cos " << cosine;
-      EXPECT_NEAR(table.bias, grazing, 1e-3) << alpha << " at cos " << cosine;
+      EXPECT_NEAR(1 - table.energy_loss, total, 7e-4) << alpha << " at cos " << cosine;
+      EXPECT_NEAR(table.schlick_bias, grazing, 1e-3) << alpha << " at cos " << cosine;
     }
 }
 
@@ -132,18 +132,18 @@ TEST(GgxEnergy, AnisotropicTablesAgreeWithQuadrature) {
         const Vec3f wo = direction(cosine, azimuth);
         const auto [total, grazing] = albedo(ggx, wo);
         const GgxAlbedo table = ggx_albedo(wo, ggx);
-        EXPECT_NEAR(1 - table.missing, total, tolerance)
+        EXPECT_NEAR(1 - table.energy_loss, total, tolerance)
             << ggx.ax << ' ' << ggx.ay << ' ' << cosine << ' ' << azimuth;
-        EXPECT_NEAR(table.bias, grazing, tolerance)
+        EXPECT_NEAR(table.schlick_bias, grazing, tolerance)
             << ggx.ax << ' ' << ggx.ay << ' ' << cosine << ' ' << azimuth;
       }
 }
 
 TEST(GgxEnergy, KnownValues) {
-  EXPECT_NEAR(1 - ggx_albedo(1, 1).missing, 1 - std::log(2.), 5e-4);  // in closed form
+  EXPECT_NEAR(1 - ggx_albedo(1, 1).energy_loss, 1 - std::log(2.), 5e-4);  // in closed form
   const std::pair<float, double> means[] = {{0.1f, 0.972}, {0.25f, 0.882}, {0.5f, 0.700}, {1, 0.409}};
-  for (const auto& [alpha, mean] : means) EXPECT_NEAR(1 - ggx_average_albedo(alpha).missing, mean, 1e-3);
-  EXPECT_NEAR(ggx_average_albedo(5e-4f).bias, 1 / 21., 5e-4);  // mean of Schlick's weight
+  for (const auto& [alpha, mean] : means) EXPECT_NEAR(1 - ggx_average_albedo(alpha).energy_loss, mean, 1e-3);
+  EXPECT_NEAR(ggx_average_albedo(5e-4f).schlick_bias, 1 / 21., 5e-4);  // mean of Schlick's weight
 }
 
 // The mean is that of what lookups give, whatever lies between nodes.
@@ -154,12 +154,12 @@ TEST(GgxEnergy, MeanIsThatOfTheTable) {
     for (int i = 0; i < steps; ++i) {
       const double x = (i + 0.5) / steps, weight = 4 * x * x * x / steps;  // 2 mu dmu with mu = x^2
       const GgxAlbedo at = ggx_albedo(float(x * x), alpha);
-      missing += weight * at.missing;
-      bias += weight * at.bias;
+      missing += weight * at.energy_loss;
+      bias += weight * at.schlick_bias;
     }
     // A tenth at most is missing toward any direction where the error of the mean is this large.
-    EXPECT_NEAR(ggx_average_albedo(alpha).missing / missing, 1, 9e-3) << alpha;
-    EXPECT_NEAR(ggx_average_albedo(alpha).bias, bias, 3e-4) << alpha;
+    EXPECT_NEAR(ggx_average_albedo(alpha).energy_loss / missing, 1, 9e-3) << alpha;
+    EXPECT_NEAR(ggx_average_albedo(alpha).schlick_bias, bias, 3e-4) << alpha;
   }
 }
 

@@ -21,15 +21,14 @@ MaterialDescription described(const Describe& describe) {
   return description;
 }
 
-Bsdf bsdf(const MaterialDescription& description, const Encounter& encounter = {},
+Bsdf bsdf(const MaterialDescription& description, const BsdfContext& context = {},
           std::span<const Texture> textures = {}) {
-  return Material(description, textures, false).bsdf({}, encounter);
+  return Material(description, textures, false).bsdf({}, context);
 }
 
 template <typename Model>
-bool is(const Describe& describe, const Encounter& encounter = {}) {
-  return std::holds_alternative<Model>(
-      static_cast<const Bsdf::variant&>(bsdf(described(describe), encounter)));
+bool is(const Describe& describe, const BsdfContext& context = {}) {
+  return std::holds_alternative<Model>(static_cast<const Bsdf::variant&>(bsdf(described(describe), context)));
 }
 
 Vec3f direction(float cosine, float azimuth) {
@@ -176,7 +175,7 @@ TEST(Material, AnisotropyDirectionTurnsWithRotationAndTexture) {
 TEST(Material, AnisotropyStretchesAlongTheTangent) {
   const Bsdf brushed =
       bsdf(described([](auto& m) { m.metallic = 1, m.roughness = 0.3f, m.anisotropy = 0.5f; }));
-  const Bsdf expected = Glossy::metal({{0.8f, 0.4f, 0.2f}, 1, {}}, {lerp(0.25f, 0.09f, 1.f), 0.09f});
+  const Bsdf expected = Glossy::conductor({{0.8f, 0.4f, 0.2f}, 1, {}}, {lerp(0.25f, 0.09f, 1.f), 0.09f});
   expect_same(brushed, expected);
   const Vec3f up(0, 0, 1);
   EXPECT_GT(brushed.eval(up, direction(0.7f, 0)).f_cos.x,

@@ -13,11 +13,11 @@ namespace vernier {
 namespace {
 
 using validation::Corners;
-using validation::Dice;
 using validation::distance_to_boundary;
 using validation::ExactHit;
 using validation::intersect_exactly;
 using validation::is_near_boundary;
+using validation::Rng;
 using Kind = ExactHit::Kind;
 
 const Corners unit_triangle{Vec3f{0, 0, 0}, Vec3f{1, 0, 0}, Vec3f{0, 1, 0}};
@@ -61,16 +61,16 @@ TEST(ExactIntersection, MeasuresTheDistanceToTheNearestEdge) {
 }
 
 /// A random ray and triangle; the ray often through an edge, a vertex or along an axis.
-std::pair<Ray, Corners> random_case(Dice& dice) {
+std::pair<Ray, Corners> random_case(Rng& rng) {
   Corners c;
-  for (Vec3f& corner : c) corner = dice.in_cube(1);
-  Vec3f target = c[0] + (c[1] - c[0]) * dice.uniform(-.2f, 1) + (c[2] - c[0]) * dice.uniform(-.2f, 1);
-  if (dice.below(3) == 0) target = c[0] + (c[1] - c[0]) * dice.uniform(0, 1);
-  if (dice.below(6) == 0) target = c[1];
+  for (Vec3f& corner : c) corner = rng.in_cube(1);
+  Vec3f target = c[0] + (c[1] - c[0]) * rng.uniform(-.2f, 1) + (c[2] - c[0]) * rng.uniform(-.2f, 1);
+  if (rng.below(3) == 0) target = c[0] + (c[1] - c[0]) * rng.uniform(0, 1);
+  if (rng.below(6) == 0) target = c[1];
   Ray ray;
-  ray.origin = target + dice.direction() * dice.magnitude(.1f, 1000);
+  ray.origin = target + rng.direction() * rng.magnitude(.1f, 1000);
   ray.direction = target - ray.origin;
-  if (dice.below(6) == 0) {
+  if (rng.below(6) == 0) {
     ray.origin = target;
     ray.origin.z += 3;
     ray.direction = {0, -0.f, -1};
@@ -79,11 +79,11 @@ std::pair<Ray, Corners> random_case(Dice& dice) {
 }
 
 TEST(TriangleTests, AgreeWithExactArithmetic) {
-  Dice dice(1, 0);
+  Rng rng(1, 0);
   int hits = 0;
   constexpr int cases = 200'000 / test::thinning;
   for (int i = 0; i < cases; ++i) {
-    const auto [ray, c] = random_case(dice);
+    const auto [ray, c] = random_case(rng);
     const ExactHit exact = intersect_exactly(ray, c);
     const bool is_hit = exact.kind == Kind::hit && exact.t > 0;
     for (const auto& hit : {intersect_watertight(ShearedRay(ray.origin, ray.direction), c[0], c[1], c[2]),
@@ -103,14 +103,14 @@ TEST(TriangleTests, AgreeWithExactArithmetic) {
 // Needles 4 m long and half a millimetre wide, met at a hundredth of a radian from a millimetre above: the
 // distances of their corners are thousands of times that of the hit.
 TEST(TriangleTests, NeedlesAreMetWhereTheyAre) {
-  Dice dice(7, 0);
+  Rng rng(7, 0);
   int hits = 0;
   for (int i = 0; i < 20'000; ++i) {
-    const Vec3f along = sample_sphere({dice.uniform(0, 1), dice.uniform(0, 1)});
+    const Vec3f along = sample_sphere({rng.uniform(0, 1), rng.uniform(0, 1)});
     const auto [across, up, unused] = Frame::from_normal(along);
-    const Vec3f corner(dice.uniform(0, 1) - 2, dice.uniform(0, 1), dice.uniform(0, 1) - 1);
-    const Corners c{corner, corner + along * 4, corner + along * (4 * dice.uniform(0, 1)) + across * 5e-4f};
-    const float v = 0.25f + dice.uniform(0, 1) / 2, u = (1 - v) * dice.uniform(0, 1);
+    const Vec3f corner(rng.uniform(0, 1) - 2, rng.uniform(0, 1), rng.uniform(0, 1) - 1);
+    const Corners c{corner, corner + along * 4, corner + along * (4 * rng.uniform(0, 1)) + across * 5e-4f};
+    const float v = 0.25f + rng.uniform(0, 1) / 2, u = (1 - v) * rng.uniform(0, 1);
     const Vec3f on = c[0] * (1 - u - v) + c[1] * u + c[2] * v;
     Ray ray;
     ray.origin = on - (along + across) * 0.07f + up * 1e-3f;
@@ -128,11 +128,11 @@ TEST(TriangleTests, NeedlesAreMetWhereTheyAre) {
 /// The block's answer for its one triangle in each lane against the plain function's, to the bit.
 template <typename Test, typename Plain>
 void expect_same_bits(const Plain& plain) {
-  Dice dice(2, 0);
+  Rng rng(2, 0);
   for (int i = 0; i < 50'000; ++i) {
-    const auto [ray, c] = random_case(dice);
+    const auto [ray, c] = random_case(rng);
     std::array<Corners, 4> lanes{c, c, c, c};
-    for (Corners& lane : lanes) std::rotate(lane.begin(), lane.begin() + dice.below(3), lane.end());
+    for (Corners& lane : lanes) std::rotate(lane.begin(), lane.begin() + rng.below(3), lane.end());
     TriangleBlock block{};
     for (unsigned lane = 0; lane < 4; ++lane)
       for (int vertex = 0; vertex < 3; ++vertex)

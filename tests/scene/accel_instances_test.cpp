@@ -21,7 +21,7 @@ TEST_P(Instances, PlacesInstancesWhereBakedTrianglesAre) {
 }
 
 TEST_P(Instances, StretchesByAThousandEachWay) {
-  Soup soup;
+  TriangleSoup soup;
   const uint32_t mesh = soup.add_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
   Transform to_world;
   to_world.x = {1, 0, 0};
@@ -37,7 +37,7 @@ TEST_P(Instances, StretchesByAThousandEachWay) {
 }
 
 TEST_P(Instances, KeepsInstancesThatLoseADimension) {
-  Soup soup;
+  TriangleSoup soup;
   const uint32_t mesh = soup.add_mesh({{-1, -1, -1}, {1, -1, 1}, {0, 1, 5}}, {{0, 1, 2}});
   Transform flat;
   flat.z = {0, 0, 0};
@@ -60,7 +60,7 @@ TEST_P(Instances, KeepsInstancesThatLoseADimension) {
 }
 
 TEST_P(Instances, TellsInstancesOfOneMeshApart) {
-  Soup soup;
+  TriangleSoup soup;
   const uint32_t mesh = soup.add_mesh({{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}});
   const auto at = [](uint32_t i, float z) {
     const uint32_t column = i % 10, row = i / 10;
@@ -83,12 +83,12 @@ TEST_P(Instances, TellsInstancesOfOneMeshApart) {
 FOR_EVERY_ACCELERATOR(Instances);
 
 TEST(WorldToMesh, InvertsInDouble) {
-  Dice dice(1, 0);
+  Rng rng(1, 0);
   for (int i = 0; i < 1000; ++i) {
-    const Transform to_world = random_placement(dice, {1, -2, .5f}, dice.in_cube(100));
+    const Transform to_world = random_placement(rng, {1, -2, .5f}, rng.in_cube(100));
     const auto to_mesh = WorldToMesh::of(to_world);
     ASSERT_TRUE(to_mesh);
-    const Vec3f p = dice.in_cube(1);
+    const Vec3f p = rng.in_cube(1);
     EXPECT_LT(length(to_mesh->point(to_world.point(p)) - p), 1e-4f);
     EXPECT_LT(to_mesh->distortion(to_world), 13);
     EXPECT_GE(to_mesh->distortion(to_world), 1);

@@ -11,19 +11,19 @@
 namespace vernier::test {
 namespace {
 
-using validation::Dice;
-using validation::Soup;
+using validation::Rng;
+using validation::TriangleSoup;
 
 class MovingTriangles : public EveryAccelerator {};
 
 /// Random triangles that are elsewhere at each moment.
-std::vector<std::vector<Vec3f>> random_moments(Dice& dice, size_t moments, uint32_t triangles) {
+std::vector<std::vector<Vec3f>> random_moments(Rng& rng, size_t moments, uint32_t triangles) {
   std::vector<std::vector<Vec3f>> all(moments);
   for (uint32_t i = 0; i < triangles; ++i) {
-    const Vec3f center = dice.in_cube(1), speed = dice.in_cube(0.4f);
+    const Vec3f center = rng.in_cube(1), speed = rng.in_cube(0.4f);
     for (size_t m = 0; m < moments; ++m)
       for (int corner = 0; corner < 3; ++corner)
-        all[m].push_back(center + speed * (float(m) / float(moments - 1)) + dice.in_cube(0.2f));
+        all[m].push_back(center + speed * (float(m) / float(moments - 1)) + rng.in_cube(0.2f));
   }
   return all;
 }
@@ -37,19 +37,19 @@ std::vector<Triangle> separate_triangles(uint32_t count) {
 /// Meshes known at 2, 3, 5 and 33 moments, one that stands still in the world, and one placed in it.
 class MovingSoup {
  public:
-  explicit MovingSoup(Dice& dice) {
+  explicit MovingSoup(Rng& rng) {
     for (const size_t moments : {2, 3, 5, 5, 33}) {
-      const uint32_t count = 40 + dice.below(20);
-      moments_.push_back(random_moments(dice, moments, count));
+      const uint32_t count = 40 + rng.below(20);
+      moments_.push_back(random_moments(rng, moments, count));
       soup.add_moving(moments_.back(), separate_triangles(count));
     }
-    still_ = random_moments(dice, 2, 50)[0];
-    placement_ = validation::random_placement(dice, {1, 0.5f, -1}, {0.1f, 0, 0});
+    still_ = random_moments(rng, 2, 50)[0];
+    placement_ = validation::random_placement(rng, {1, 0.5f, -1}, {0.1f, 0, 0});
     add_still(soup);
   }
 
   /// What stands where this is at a time.
-  void freeze(float time, Soup& frozen) const {
+  void freeze(float time, TriangleSoup& frozen) const {
     for (const auto& moments : moments_) {
       const auto [first, part] = moments_around(time, moments.size());
       std::vector<Vec3f> positions;
@@ -61,10 +61,10 @@ class MovingSoup {
     add_still(frozen);
   }
 
-  Soup soup;
+  TriangleSoup soup;
 
  private:
-  void add_still(Soup& to) const {
+  void add_still(TriangleSoup& to) const {
     to.add(still_, separate_triangles(50));
     const uint32_t mesh = to.add_mesh(still_, separate_triangles(50));
     to.add_instance(mesh, placement_);
@@ -76,8 +76,8 @@ class MovingSoup {
   Transform placement_;
 };
 
-Ray random_ray(Dice& dice, float time) {
-  const Vec3f from = dice.in_cube(2.5f), toward = dice.in_cube(1);
+Ray random_ray(Rng& rng, float time) {
+  const Vec3f from = rng.in_cube(2.5f), toward = rng.in_cube(1);
   Ray ray = make_ray(from, toward - from);
   ray.time = time;
   return ray;
@@ -90,19 +90,19 @@ bool agree(const std::optional<RawHit>& a, const std::optional<RawHit>& b) {
 }
 
 TEST_P(MovingTriangles, AreHitWhereTheyAreAtTheRaysTime) {
-  Dice dice(7, 1);
-  const MovingSoup moving(dice);
+  Rng rng(7, 1);
+  const MovingSoup moving(rng);
   const auto accelerator = build(moving.soup);
   const bool rounds_alike = GetParam().name.find("embree") == std::string_view::npos &&
                             GetParam().name.find("moeller") == std::string_view::npos;
   constexpr int rays = 500;
   size_t hits = 0, different = 0;
   for (const float time : {0.f, 1e-6f, 0.2f, 0.25f, 0.499999f, 0.5f, 0.71f, 0.99999f, 1.f}) {
-    Soup frozen;
+    TriangleSoup frozen;
     moving.freeze(time, frozen);
     const auto reference = build_brute_force(frozen.geometry());
     for (int i = 0; i < rays; ++i) {
-      const Ray ray = random_ray(dice, time);
+      const Ray ray = random_ray(rng, time);
       const auto expected = reference->closest(ray), found = accelerator->closest(ray);
       hits += expected.has_value();
       different += rounds_alike ? !same_bits(expected, found) : !agree(expected, found);
@@ -118,7 +118,7 @@ TEST_P(MovingTriangles, AreHitWhereTheyAreAtTheRaysTime) {
 }
 
 TEST_P(MovingTriangles, WithoutAreaAtAllMomentsOrNotFiniteAreNeverHit) {
-  Soup soup;
+  TriangleSoup soup;
   const std::vector<Vec3f> line{{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}};
   const float nan = std::numeric_limits<float>::quiet_NaN();
   soup.add_moving({line, line, line}, {{0, 1, 2}});
@@ -134,7 +134,7 @@ TEST_P(MovingTriangles, WithoutAreaAtAllMomentsOrNotFiniteAreNeverHit) {
 }
 
 TEST_P(MovingTriangles, ThatARayLeavesOrReachesLetItPass) {
-  Soup soup;
+  TriangleSoup soup;
   const std::vector<Vec3f> before{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}},
       after{{-1, -1, 1}, {1, -1, 1}, {0, 1, 1}};
   soup.add_moving({before, after}, {{0, 1, 2}});
@@ -144,7 +144,7 @@ TEST_P(MovingTriangles, ThatARayLeavesOrReachesLetItPass) {
   const auto hit = accelerator->closest(ray);
   ASSERT_TRUE(hit);
   EXPECT_FLOAT_EQ(hit->t, 4.75f);
-  ray.leaves = {0, 0};
+  ray.origin_triangle = {0, 0};
   EXPECT_FALSE(accelerator->closest(ray));
   EXPECT_FALSE(accelerator->occluded(ray));
 }

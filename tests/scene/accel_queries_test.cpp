@@ -18,7 +18,7 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// Squares z = 1, 2, 3, two triangles each, and which hits a downward ray from z = 4 has.
 struct Sheets {
-  Soup soup;
+  TriangleSoup soup;
   Sheets() {
     for (const float z : {1.f, 2.f, 3.f})
       soup.add({{-1, -1, z}, {1, -1, z}, {-1, 1, z}, {1, 1, z}}, {{0, 1, 2}, {1, 3, 2}});
@@ -58,7 +58,7 @@ TEST_P(Queries, PassesTheTrianglesAtTheEndsOfTheRay) {
   Sheets sheets;
   const auto accelerator = build(sheets.soup);
   Ray ray = make_ray(above, down, 0, 2.5f);  // sheets 2 and 1
-  ray.leaves = {2, 0};
+  ray.origin_triangle = {2, 0};
   const auto hit = accelerator->closest(ray);
   ASSERT_TRUE(hit);
   EXPECT_EQ(hit->instance, 1u);
@@ -66,12 +66,12 @@ TEST_P(Queries, PassesTheTrianglesAtTheEndsOfTheRay) {
   std::vector<RawHit> hits;
   accelerator->all_hits(ray, hits);
   EXPECT_EQ(hits.size(), 1u);
-  ray.reaches = {1, 0};
+  ray.target_triangle = {1, 0};
   EXPECT_FALSE(accelerator->closest(ray));
   EXPECT_FALSE(accelerator->occluded(ray));
   accelerator->all_hits(ray, hits);
   EXPECT_TRUE(hits.empty());
-  ray.reaches = {1, 1};  // the other half of the sheet is not the one met
+  ray.target_triangle = {1, 1};  // the other half of the sheet is not the one met
   EXPECT_TRUE(accelerator->occluded(ray));
 }
 
@@ -151,10 +151,10 @@ TEST_P(Queries, CountsBothSides) {
 }
 
 TEST_P(Queries, MissesInAnEmptySceneAndWithEmptyMeshes) {
-  Soup nothing, empty_mesh;
+  TriangleSoup nothing, empty_mesh;
   empty_mesh.add({}, {});
   empty_mesh.add({{0, 0, 0}}, {});
-  for (const Soup* soup : {&nothing, &empty_mesh}) {
+  for (const TriangleSoup* soup : {&nothing, &empty_mesh}) {
     const auto accelerator = build(*soup);
     std::vector<RawHit> hits(3);
     EXPECT_FALSE(accelerator->closest(make_ray(above, down)));
@@ -165,7 +165,7 @@ TEST_P(Queries, MissesInAnEmptySceneAndWithEmptyMeshes) {
 }
 
 TEST_P(Queries, MissesTrianglesWithoutAreaAndRaysInTheirPlane) {
-  Soup soup;
+  TriangleSoup soup;
   soup.add({{0, 0, 0}, {1, 2, 3}, {2, 4, 6}, {1, 0, 0}, {0, 1, 0}},
            {{0, 1, 2}, {0, 0, 1}, {1, 1, 1}, {0, 3, 4}});
   const auto accelerator = build(soup);
@@ -173,7 +173,7 @@ TEST_P(Queries, MissesTrianglesWithoutAreaAndRaysInTheirPlane) {
   EXPECT_FALSE(accelerator->closest(make_ray({.5f, 1, 9}, down)));
   EXPECT_FALSE(accelerator->closest(make_ray({-1, .5f, 0}, {1, 0, 0})));
   // pbrt's BadCases: a ray at a triangle that is a line
-  Soup line;
+  TriangleSoup line;
   line.add({{-1113.45459f, -79.049614f, -56.2431908f},
             {-1113.45459f, -87.0922699f, -56.2431908f},
             {-1113.45459f, -79.2090149f, -56.2431908f}},
@@ -183,13 +183,13 @@ TEST_P(Queries, MissesTrianglesWithoutAreaAndRaysInTheirPlane) {
 }
 
 TEST_P(Queries, DropsTrianglesThatAreNotFinite) {
-  Soup soup;
+  TriangleSoup soup;
   soup.add({{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, {nan, 0, 1}, {0, infinity, 1}, {-infinity, 0, nan}},
            {{0, 1, 3}, {0, 1, 2}, {1, 2, 4}, {0, 2, 5}, {3, 4, 5}});
   const auto accelerator = build(soup);
-  Dice dice(1, 0);
+  Rng rng(1, 0);
   for (int i = 0; i < 1000; ++i) {
-    const auto hit = accelerator->closest(make_ray(dice.in_cube(5), dice.direction()));
+    const auto hit = accelerator->closest(make_ray(rng.in_cube(5), rng.direction()));
     if (hit) {
       EXPECT_EQ(hit->primitive, 1u);
       EXPECT_TRUE(std::isfinite(hit->t));
@@ -200,7 +200,7 @@ TEST_P(Queries, DropsTrianglesThatAreNotFinite) {
 
 TEST_P(Queries, SurvivesDenormalAndHugeCoordinates) {
   for (const float size : {1e-40f, 1e-20f, 1e9f, 1e12f, 1e15f, 1e17f}) {
-    Soup soup;
+    TriangleSoup soup;
     soup.add({{0, 0, 0}, {size, 0, 0}, {0, size, 0}}, {{0, 1, 2}});
     const auto beside = build(soup)->closest(make_ray({1.1f * size, .25f * size, size}, down));
     EXPECT_FALSE(beside && std::abs(beside->t / size - 1) < 1e-3f) << size;
@@ -266,7 +266,7 @@ class EverySecondSheet : public HitFilter {
 
 TEST_P(Queries, AsksTheFilterWhereInstancesAreFiltered) {
   EverySecondSheet filter;
-  Soup soup;
+  TriangleSoup soup;
   const uint32_t mesh =
       soup.add_mesh({{-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 3, 2}});
   for (uint32_t i = 0; i < 4; ++i) {

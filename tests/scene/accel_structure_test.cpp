@@ -19,12 +19,13 @@ using test::same_bits;
 
 /// Random rays in and around [-1, 1]^3 times `size` have the same answers, to the bit, as the reference's
 /// brute force.
-void expect_brute_force_answers(const Accelerator& accelerator, const Soup& soup, float size, int rays) {
+void expect_brute_force_answers(const Accelerator& accelerator, const TriangleSoup& soup, float size,
+                                int rays) {
   const auto truth = build_brute_force(soup.geometry());
-  Dice dice(11, 0);
+  Rng rng(11, 0);
   std::vector<RawHit> expected, found;
   for (int i = 0; i < rays; ++i) {
-    const Ray ray = make_ray(dice.in_cube(1.5f * size), dice.direction());
+    const Ray ray = make_ray(rng.in_cube(1.5f * size), rng.direction());
     ASSERT_TRUE(same_bits(accelerator.closest(ray), truth->closest(ray))) << i;
     ASSERT_EQ(accelerator.occluded(ray), truth->occluded(ray)) << i;
     truth->all_hits(ray, expected);
@@ -37,15 +38,14 @@ void expect_brute_force_answers(const Accelerator& accelerator, const Soup& soup
 
 TEST(OwnAccelerators, AnswerAlikeToTheBit) {
   for (uint64_t seed = 1; seed <= 20; ++seed) {
-    Dice dice(seed, 0);
-    Soup soup;
-    add_random_triangles(soup, dice, 1 + dice.below(300), dice.magnitude(.01f, 1));
+    Rng rng(seed, 0);
+    TriangleSoup soup;
+    add_random_triangles(soup, rng, 1 + rng.below(300), rng.magnitude(.01f, 1));
     add_waves(soup, 6);
-    const uint32_t mesh = dice.below(2);
+    const uint32_t mesh = rng.below(2);
     for (int i = 0; i < 5; ++i) {
-      const Vec3f stretch{dice.magnitude(.1f, 10), dice.magnitude(.1f, 10),
-                          i == 4 ? 0.f : dice.uniform(-1, 1)};
-      soup.add_instance(mesh, random_placement(dice, stretch, dice.in_cube(3)));
+      const Vec3f stretch{rng.magnitude(.1f, 10), rng.magnitude(.1f, 10), i == 4 ? 0.f : rng.uniform(-1, 1)};
+      soup.add_instance(mesh, random_placement(rng, stretch, rng.in_cube(3)));
     }
     for (const auto build : {build_bvh, build_octree})
       expect_brute_force_answers(*build(soup.geometry()), soup, 2, 1000 / test::thinning);
@@ -58,7 +58,7 @@ uint32_t test_size(const Stress& stress) { return std::min(stress.triangles, 20'
 class StructureStress : public testing::TestWithParam<Stress> {};
 
 TEST_P(StructureStress, ChangesNoAnswer) {
-  Soup soup;
+  TriangleSoup soup;
   GetParam().fill(soup, test_size(GetParam()));
   for (const auto build : {build_bvh, build_octree})
     expect_brute_force_answers(*build(soup.geometry()), soup, GetParam().size, 300);
@@ -66,13 +66,13 @@ TEST_P(StructureStress, ChangesNoAnswer) {
 
 TEST_P(StructureStress, IsHeldByEveryAccelerator) {
   for (const auto& entry : accelerators()) {
-    Soup soup;
+    TriangleSoup soup;
     GetParam().fill(soup, test_size(GetParam()));
     const auto reference = build_bvh(soup.geometry()), accelerator = entry.build(soup.geometry());
-    Dice dice(12, 0);
+    Rng rng(12, 0);
     int misses = 0;
     for (int i = 0; i < 300; ++i) {
-      const Ray ray = make_ray(dice.in_cube(1.5f * GetParam().size), dice.direction());
+      const Ray ray = make_ray(rng.in_cube(1.5f * GetParam().size), rng.direction());
       misses += accelerator->closest(ray).has_value() != reference->closest(ray).has_value();
     }
     EXPECT_LE(misses, 3) << entry.name;  // grazing slivers
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, StructureStress, testing::ValuesIn(stresses()),
                          [](const auto& stress) { return std::string(stress.param.name); });
 
 TEST(Bvh, StaysShallowWhereEverySplitPeelsOneTriangle) {
-  Soup soup;
+  TriangleSoup soup;
   const Stress& exponential = find_by_name(stresses(), "stress", "ExponentialSpacing");
   exponential.fill(soup, exponential.triangles);
   const Bvh bvh(soup.geometry());
@@ -95,13 +95,13 @@ TEST(Bvh, StaysShallowWhereEverySplitPeelsOneTriangle) {
 TEST(Bvh, IsTheSameHoweverManyThreadsBuildIt) {
   const auto cost_of = [](unsigned threads) {
     const ThreadLimit limit(threads);
-    Soup soup;
+    TriangleSoup soup;
     add_waves(soup, 150);
     const Bvh bvh(soup.geometry());
-    Dice dice(5, 0);
+    Rng rng(5, 0);
     QueryCost sum;
     for (int i = 0; i < 2000; ++i) {
-      const auto cost = bvh.closest_cost(make_ray(dice.in_cube(2), dice.direction()));
+      const auto cost = bvh.closest_cost(make_ray(rng.in_cube(2), rng.direction()));
       sum.nodes += cost->nodes;
       sum.blocks += cost->blocks;
     }
@@ -111,14 +111,14 @@ TEST(Bvh, IsTheSameHoweverManyThreadsBuildIt) {
 }
 
 TEST(Bvh, AnswersRightAfterVerticesMoved) {
-  Dice dice(6, 0);
-  Soup soup;
-  add_random_triangles(soup, dice, 500, .2f);
-  soup.add_instance(0, random_placement(dice, {1, 2, 3}, {4, 0, 0}));
-  soup.add_instance(0, random_placement(dice, {1, 1, 0}, {-4, 0, 0}));
+  Rng rng(6, 0);
+  TriangleSoup soup;
+  add_random_triangles(soup, rng, 500, .2f);
+  soup.add_instance(0, random_placement(rng, {1, 2, 3}, {4, 0, 0}));
+  soup.add_instance(0, random_placement(rng, {1, 1, 0}, {-4, 0, 0}));
   Bvh bvh(soup.geometry());
   for (int step = 0; step < 3; ++step) {
-    for (Vec3f& p : soup.positions(0)) p += dice.in_cube(.5f);
+    for (Vec3f& p : soup.positions(0)) p += rng.in_cube(.5f);
     bvh.refit();
     expect_brute_force_answers(bvh, soup, 3, 1000);
   }
@@ -128,7 +128,7 @@ class LargeMeshes : public EveryAccelerator {};
 
 TEST_P(LargeMeshes, FindsEveryTriangleOfALargeMesh) {
   if (GetParam().name == "brute_force") GTEST_SKIP() << "too slow";
-  Soup soup;
+  TriangleSoup soup;
   add_waves(soup, 220);  // 96,800 triangles
   const auto accelerator = build(soup);
   const auto& mesh = soup.geometry().meshes[0];
@@ -143,15 +143,15 @@ TEST_P(LargeMeshes, FindsEveryTriangleOfALargeMesh) {
 }
 
 TEST_P(LargeMeshes, PicksTheSameOfCoincidingTrianglesAfterARebuild) {
-  Dice dice(7, 0);
-  Soup soup;
+  Rng rng(7, 0);
+  TriangleSoup soup;
   for (int i = 0; i < 3; ++i) {
-    Dice same(8, 0);
+    Rng same(8, 0);
     add_random_triangles(soup, same, 200, .4f);
   }
   const auto first = build(soup), second = build(soup);
   for (int i = 0; i < 2000; ++i) {
-    const Ray ray = make_ray(dice.in_cube(2), dice.direction());
+    const Ray ray = make_ray(rng.in_cube(2), rng.direction());
     ASSERT_TRUE(same_bits(first->closest(ray), second->closest(ray))) << i;
   }
 }
@@ -159,7 +159,7 @@ TEST_P(LargeMeshes, PicksTheSameOfCoincidingTrianglesAfterARebuild) {
 FOR_EVERY_ACCELERATOR(LargeMeshes);
 
 TEST(OwnAccelerators, PickTheFirstOfCoincidingTriangles) {
-  Soup soup;
+  TriangleSoup soup;
   for (int i = 0; i < 2; ++i)
     soup.add({{-1, -1, 0}, {1, -1, .5f}, {0, 1, 0}}, std::vector<Triangle>(20'000, Triangle{0, 1, 2}));
   for (const auto build : {build_bvh, build_octree}) {

@@ -21,7 +21,7 @@ namespace vernier::test {
 /// A test that every line of accelerators() goes through.
 class EveryAccelerator : public testing::TestWithParam<AcceleratorEntry> {
  protected:
-  std::unique_ptr<Accelerator> build(const validation::Soup& soup) const {
+  std::unique_ptr<Accelerator> build(const validation::TriangleSoup& soup) const {
     return GetParam().build(soup.geometry());
   }
 };

@@ -100,7 +100,7 @@ class Mutator {
  public:
   explicit Mutator(uint64_t seed) : engine_(seed) {}
 
-  /// One value of the document becomes another, goes, or trades places with its neighbours' kind.
+  /// One value of the document becomes another, goes, or trades places with its neighbors' kind.
   void change(json& document) {
     const json flat = document.flatten();
     const json::json_pointer place = above(json::json_pointer(pick(flat).first));

@@ -149,7 +149,7 @@ class Session:
     """
 
     def __init__(self, scene: Scene, *, threads: int = 0, **settings: Any) -> None:
-        """Settings are those of vernier.Settings. ``threads`` 0: all of the machine's."""
+        """Settings are those of vernier.Settings. ``threads`` 0: as many as the machine has."""
         self._request = _request(scene, settings)  # type: ignore[arg-type]
         self._scene = scene
         self._reason = "interrupted"
@@ -239,7 +239,7 @@ def render(scene: Scene, *, spp: int | None = None, error: float | None = None, 
         aov: layers, "all" or names: "albedo", "normal", "depth", "position", "id", "error", ... (docs/layers.md)
         denoise: a filter of ``vernier denoise``: "nlm", ...; the picture's error is then that after filtering.
         progress: see Session.run.
-        threads: 0: all of the machine's. The picture does not depend on it.
+        threads: 0: as many as the machine has. The picture does not depend on it.
         settings: those of vernier.Settings: size, camera, env, background, integrator, seed, ...
 
     The same settings give the same picture as the command line, to the bit. Ctrl-C raises KeyboardInterrupt; a Session

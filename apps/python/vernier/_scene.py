@@ -246,14 +246,14 @@ class Environment:
         if self.env is None:
             return self._leave_or_light(built, request)
         if isinstance(self.env, np.ndarray):
-            built.surround(_core.Environment.from_array(self.env, self.rotation, self.scale))
+            built.set_environment(_core.Environment.from_array(self.env, self.rotation, self.scale))
             return "array"
         if self.env == "none":
-            built.surround(None)
+            built.set_environment(None)
         elif self.env in ("sky", "studio"):
-            built.surround(_core.Environment.built_in(self.env, json.dumps(request.settings), self.rotation, self.scale))
+            built.set_environment(_core.Environment.built_in(self.env, json.dumps(request.settings), self.rotation, self.scale))
         else:
-            built.surround(_core.Environment.read(self.env, self.rotation, self.scale))
+            built.set_environment(_core.Environment.read(self.env, self.rotation, self.scale))
         return self.env
 
     @staticmethod
@@ -261,10 +261,10 @@ class Environment:
         """The file's own, or a studio where what the camera sees is dark without it."""
         own = built.own_environment
         settings = json.dumps(request.settings)
-        built.surround(own)
+        built.set_environment(own)
         if not request.shows_light or not built.is_dark(settings):
             return "none" if own is None else "scene"
-        built.surround(_core.Environment.built_in("studio", settings, 0.0, 1.0))
+        built.set_environment(_core.Environment.built_in("studio", settings, 0.0, 1.0))
         request.notices += logged([("info", "", "the scene has no light that reaches what is seen; adding a studio "
                                     "around it, env='none' leaves it as it is")])
         return "studio"

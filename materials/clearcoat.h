@@ -10,7 +10,7 @@ namespace vernier {
 /// light, F by Schlick, and leave the rest to what lies below. That both are weighed by the angle of wo alone
 /// is the extension's own choice; it conserves energy but is not reciprocal. Light that facets block of each
 /// other is given back as a white metal does, so the coat loses none.
-struct Coat {
+struct Clearcoat {
   float weight = 0;       ///< 0: none
   float alpha = 0;        ///< width of its facets: roughness squared
   Vec3f normal{0, 0, 1};  ///< in the frame of the layer below
@@ -26,7 +26,7 @@ struct Coat {
   }
 
   /// Its facets in that frame, reflecting everything.
-  Glossy facets() const { return Glossy::metal({{1, 1, 1}, 1, {}}, {alpha, alpha}); }
+  Glossy facets() const { return Glossy::conductor({{1, 1, 1}, 1, {}}, {alpha, alpha}); }
 };
 
 }  // namespace vernier

@@ -12,17 +12,17 @@ namespace vernier {
 Vec3d squared_half_difference(const Film& film, int x, int y);
 /// Variance that the pixel would have if its samples were independent. They are stratified: most pixels have
 /// less.
-Vec3d independent_variance(const Film& film, int x, int y);
+Vec3d iid_variance(const Film& film, int x, int y);
 
-struct PixelEvidence {
+struct PixelReliability {
   /// Three channels: what infinitely many samples would probably give. Differs from the film's pixels where
   /// these are noisy, and is nearly independent of their errors.
-  Image likely;
+  Image shrunk_mean;
   /// One channel, 1 where the pixel's error cannot be known from what was sampled, else 0.
   Image unreliable;
 };
-PixelEvidence gather_evidence(const Film& film);
+PixelReliability assess_pixels(const Film& film);
 /// Memory that it takes while it runs, the result included.
-size_t gather_evidence_bytes_per_pixel();
+size_t assess_pixels_bytes_per_pixel();
 
 }  // namespace vernier

@@ -19,9 +19,9 @@ void for_each_near(const Picture& picture, int x, int y, int radius, const Visit
 /// from `prior` here (empirical Bayes; Efron and Morris 1973, "Stein's Estimation Rule and Its Competitors").
 /// The halves' errors are independent, so the product of their distances from it shows what is no noise.
 /// `picture` is a Film or has of it: width(), height(), half_mean(x, y, half), pixel(x, y),
-/// independent_variance(picture, x, y).
+/// iid_variance(picture, x, y).
 template <typename Picture, typename Prior>
-Vec3d likely_value(const Picture& picture, int x, int y, const Prior& prior) {
+Vec3d shrinkage_estimate(const Picture& picture, int x, int y, const Prior& prior) {
   Vec3d truth(0, 0, 0);
   int pixels = 0;
   for_each_near(picture, x, y, 1, [&](int i, int j) {
@@ -31,11 +31,11 @@ Vec3d likely_value(const Picture& picture, int x, int y, const Prior& prior) {
   });
   truth = max(truth / double(pixels), Vec3d(0, 0, 0));
   const Vec3d own = picture.pixel(x, y), expected = prior(x, y);
-  const Vec3d noise = independent_variance(picture, x, y);
-  Vec3d likely = own;
+  const Vec3d noise = iid_variance(picture, x, y);
+  Vec3d shrunk = own;
   for (int c = 0; c < 3; ++c)
-    if (noise[c] > 0) likely[c] = expected[c] + truth[c] / (truth[c] + noise[c]) * (own[c] - expected[c]);
-  return max(likely, Vec3d(0, 0, 0));
+    if (noise[c] > 0) shrunk[c] = expected[c] + truth[c] / (truth[c] + noise[c]) * (own[c] - expected[c]);
+  return max(shrunk, Vec3d(0, 0, 0));
 }
 
 /// Mean of the up to eight pixels around; the pixel itself when there are none.
@@ -43,19 +43,19 @@ template <typename Picture>
 Vec3d mean_around(const Picture& picture, int x, int y) {
   const Vec3d own = picture.pixel(x, y);
   Vec3d sum(0, 0, 0);
-  int neighbours = -1;
+  int neighbors = -1;
   for_each_near(picture, x, y, 1, [&](int i, int j) {
     sum += picture.pixel(i, j);
-    ++neighbours;
+    ++neighbors;
   });
-  return neighbours == 0 ? own : (sum - own) / double(neighbours);
+  return neighbors == 0 ? own : (sum - own) / double(neighbors);
 }
 
 /// The same with nothing known otherwise but the pixels around.
 template <typename Picture>
-Vec3d likely_value(const Picture& picture, int x, int y) {
+Vec3d shrinkage_estimate(const Picture& picture, int x, int y) {
   const Vec3d mean = mean_around(picture, x, y);
-  return likely_value(picture, x, y, [&](int, int) { return mean; });
+  return shrinkage_estimate(picture, x, y, [&](int, int) { return mean; });
 }
 
 }  // namespace vernier

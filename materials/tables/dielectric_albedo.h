@@ -11,10 +11,10 @@ namespace vernier {
 /// How much of the light a rough clear boundary reflects and transmits after one bounce on its facets; the
 /// rest is blocked by other facets or leaves a facet toward the wrong side of the surface. One table for each
 /// relative index.
-class GlassEnergy {
+class DielectricAlbedo {
  public:
   /// The table of relative index eta (far side over near side), kept for good. May be called from any thread.
-  static const GlassEnergy& of(float eta);
+  static const DielectricAlbedo& of(float eta);
 
   /// Directional albedo at cos_theta in [0,1] for width alpha in [0,1] when reflectance follows Fresnel's
   /// curve between those of `ends` (total internal reflection stays total) and what is not reflected is
@@ -22,7 +22,7 @@ class GlassEnergy {
   /// costs some 10 ms of integration.
   float albedo(float cos_theta, float alpha, const SchlickCurve& ends) const;
 
-  explicit GlassEnergy(float eta) : eta_(eta) {}
+  explicit DielectricAlbedo(float eta) : eta_(eta) {}
 
  private:
   struct Node {

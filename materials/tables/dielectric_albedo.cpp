@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "materials/tables/glass_energy.h"
+#include "materials/tables/dielectric_albedo.h"
 
 #include <map>
 #include <memory>
 
 #include "materials/fresnel.h"
 #include "materials/ggx.h"
-#include "materials/tables/ggx_coordinates.h"
+#include "materials/tables/albedo_table_mapping.h"
 
 namespace vernier {
 namespace {
@@ -15,19 +15,19 @@ constexpr float least_alpha = 1e-4f;
 
 }  // namespace
 
-const GlassEnergy& GlassEnergy::of(float eta) {
+const DielectricAlbedo& DielectricAlbedo::of(float eta) {
   static std::mutex mutex;
-  static std::map<float, std::unique_ptr<GlassEnergy>> tables;
+  static std::map<float, std::unique_ptr<DielectricAlbedo>> tables;
   const std::lock_guard lock(mutex);
   auto& table = tables[eta];
-  if (!table) table = std::make_unique<GlassEnergy>(eta);
+  if (!table) table = std::make_unique<DielectricAlbedo>(eta);
   return *table;
 }
 
 /// Mean over visible normals, on one side of the plane of wo since the other mirrors it. The kinks at total
 /// internal reflection and at both horizons would spoil a product rule; a Fibonacci lattice does not mind
 /// them (Niederreiter 1992, "Random Number Generation and Quasi-Monte Carlo Methods", chapter 5).
-GlassEnergy::Node GlassEnergy::integrate(float cos_theta, float alpha) const {
+DielectricAlbedo::Node DielectricAlbedo::integrate(float cos_theta, float alpha) const {
   constexpr int points = 2584, generator = 1597;
   const float z = std::max({cos_theta, 1e-5f * alpha, 1e-7f});
   const Vec3f wo(safe_sqrt(1 - z * z), 0, z);
@@ -52,7 +52,7 @@ GlassEnergy::Node GlassEnergy::integrate(float cos_theta, float alpha) const {
   return {float(1 - total / points), float(exchange_all / points), float(exchange_fresnel / points)};
 }
 
-const GlassEnergy::Row& GlassEnergy::row(int index) const {
+const DielectricAlbedo::Row& DielectricAlbedo::row(int index) const {
   Row& row = rows_[index];
   std::call_once(row.once, [&] {
     const float alpha = std::max(square(float(index) / (widths - 1)), least_alpha);
@@ -62,18 +62,18 @@ const GlassEnergy::Row& GlassEnergy::row(int index) const {
   return row;
 }
 
-GlassEnergy::Node GlassEnergy::Node::mix(float t, const Node& a, const Node& b) {
+DielectricAlbedo::Node DielectricAlbedo::Node::mix(float t, const Node& a, const Node& b) {
   return {lerp(t, a.missing, b.missing), lerp(t, a.exchange_all, b.exchange_all),
           lerp(t, a.exchange_fresnel, b.exchange_fresnel)};
 }
 
-GlassEnergy::Node GlassEnergy::Row::at(float coordinate) const {
+DielectricAlbedo::Node DielectricAlbedo::Row::at(float coordinate) const {
   const float x = coordinate * (cosines - 1);
   const int i = std::min(int(x), cosines - 2);
   return Node::mix(x - float(i), nodes[size_t(i)], nodes[size_t(i) + 1]);
 }
 
-float GlassEnergy::albedo(float cos_theta, float alpha, const SchlickCurve& ends) const {
+float DielectricAlbedo::albedo(float cos_theta, float alpha, const SchlickCurve& ends) const {
   const float a = std::clamp(alpha, least_alpha, 1.f);
   const float x = albedo_coordinate(cos_theta, a);
   const float y = std::sqrt(a) * (widths - 1);
