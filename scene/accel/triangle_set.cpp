@@ -42,17 +42,12 @@ std::array<Vec3f, 3> TriangleSet::corners(uint32_t triangle) const {
 std::vector<BuildItem> TriangleSet::items() const {
   std::vector<BuildItem> items(size_);
   for (const Part& part : parts_) {
-    tbb::parallel_for(
-        tbb::blocked_range<uint32_t>(0, static_cast<uint32_t>(part.mesh.triangles.size()), 1 << 14),
-        [&](const tbb::blocked_range<uint32_t>& range) {
-          for (uint32_t i = range.begin(); i < range.end(); ++i) {
-            BuildItem& item = items[part.first + i];
-            item.id = part.first + i;
-            if (!is_hittable(part.mesh, part.mesh.triangles[i])) continue;
-            for (const uint32_t vertex : part.mesh.triangles[i])
-              item.box.add(middle_position(part.mesh, vertex));
-          }
-        });
+    parallel_for(part.mesh.triangles.size(), [&](size_t i) {
+      BuildItem& item = items[part.first + i];
+      item.id = part.first + uint32_t(i);
+      if (!is_hittable(part.mesh, part.mesh.triangles[i])) return;
+      for (const uint32_t vertex : part.mesh.triangles[i]) item.box.add(middle_position(part.mesh, vertex));
+    });
   }
   std::erase_if(items, [](const BuildItem& item) { return item.box.empty(); });
   return items;
