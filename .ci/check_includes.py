@@ -17,7 +17,6 @@ WRAPPED = [
     (r"OpenImageIO/hash\.h", r"core/(base/fingerprint|image/[^/]*)\.cpp"),
     (r"OpenImageIO/(?!hash\.h).*", r"(core/(image|denoise)/[^/]*|tests/core/.*)\.cpp"),
     (r"OpenColorIO/.*", r"(core/display/[^/]*|tests/core/.*)\.cpp"),
-    (r"OpenImageDenoise/.*", r"(core/denoise|tests/oidn)/denoise_oidn[^/]*\.cpp"),
     (r"(draco/.*|meshoptimizer\.h)", r"(tests/)?scene/(import/)?[^/]*\.cpp"),
     (r"zstd\.h", r"(core/ktx2/level|tests/core/.*)\.cpp"),
     (r"CLI/.*", r"apps/.*"),

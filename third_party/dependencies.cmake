@@ -42,21 +42,6 @@ if(NOT embree_FOUND)
 endif()
 message(STATUS "Embree ${embree_VERSION}")
 
-# Optional, and in no Debian package.
-if(VERNIER_OIDN)
-  find_package(OpenImageDenoise CONFIG QUIET)
-  if(OpenImageDenoise_FOUND AND OpenImageDenoise_VERSION VERSION_LESS 1.4)
-    message(STATUS "Open Image Denoise ${OpenImageDenoise_VERSION} is too old; 1.4 or later is expected")
-    set(OpenImageDenoise_FOUND FALSE)
-  endif()
-  if(OpenImageDenoise_FOUND)
-    message(STATUS "Open Image Denoise ${OpenImageDenoise_VERSION}")
-  elseif(NOT VERNIER_OIDN STREQUAL "AUTO")
-    message(FATAL_ERROR "VERNIER_OIDN is ${VERNIER_OIDN}, but CMake finds no Open Image Denoise 1.4 or later: install "
-      "it from www.openimagedenoise.org and give its folder by -DOpenImageDenoise_ROOT=FOLDER")
-  endif()
-endif()
-
 # Goes into HTML pages.
 find_file(CHART_JS_FILE NAMES chart.min.js chart.umd.js PATHS /usr/share/javascript/chart.js REQUIRED)
 

@@ -30,8 +30,8 @@ const std::vector<std::string>& listed_values(const std::string& flag) {
   static const std::map<std::string, std::vector<std::string>> values = {
       {"--integrator", names_of(integrators())},
       {"--accelerator", names_of(accelerators())},
-      {"--denoise", names_of(denoisers())},
-      {"--filter", names_of(denoisers())},
+      {"--denoise", denoiser_names()},
+      {"--filter", denoiser_names()},
       {"--env", names_of(built_in_environments())},
       {"--aov", names_of(layers())},
       {"--show", {raycast_outputs().begin(), raycast_outputs().end()}},

@@ -5,11 +5,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/denoise/oidn_library.h"
+
 namespace vernier::apps {
 
 bool print_requested_denoisers(const std::string& filter) {
   if (filter != "help") return false;
   for (const Denoiser& entry : denoisers()) fmt::print("{:<12} {}\n", entry.name, entry.description);
+  if (!OidnLibrary::find()) fmt::print("{:<12} not here: {}\n", "oidn", OidnLibrary::why_not_found());
+  fmt::print("{:<12} oidn where it is found, else {}\n", "auto", denoisers().front().name);
   return true;
 }
 

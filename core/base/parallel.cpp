@@ -5,11 +5,40 @@
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
+#ifdef VERNIER_TSAN
+#include <sanitizer/tsan_interface.h>
+#endif
+
 namespace vernier {
+namespace {
+
+/// Tells ThreadSanitizer that a loop's parts run after what was before the loop and before what is after it.
+/// Nothing in other builds.
+class ForkJoin {
+ public:
+#ifdef VERNIER_TSAN
+  ForkJoin() { __tsan_release(&fork_); }
+  ~ForkJoin() { __tsan_acquire(&join_); }
+  void begin() { __tsan_acquire(&fork_); }
+  void end() { __tsan_release(&join_); }
+
+ private:
+  char fork_ = 0, join_ = 0;
+#else
+  void begin() {}
+  void end() {}
+#endif
+};
+
+}  // namespace
 
 void for_each_range(size_t count, const void* loop, void (*part)(const void*, size_t, size_t)) {
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, count),
-                    [=](const tbb::blocked_range<size_t>& range) { part(loop, range.begin(), range.end()); });
+  [[maybe_unused]] ForkJoin order;
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, count), [&](const tbb::blocked_range<size_t>& range) {
+    order.begin();
+    part(loop, range.begin(), range.end());
+    order.end();
+  });
 }
 
 ThreadLimit::ThreadLimit(unsigned threads)

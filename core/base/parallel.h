@@ -5,29 +5,7 @@
 
 #include <cstddef>
 
-#ifdef __SANITIZE_THREAD__
-#include <sanitizer/tsan_interface.h>
-#endif
-
 namespace vernier {
-
-/// Tells ThreadSanitizer, which sees nothing of TBB's library, that a loop's body runs after what was before
-/// the loop and before what is after it. Nothing in other builds.
-class ForkJoin {
- public:
-#ifdef __SANITIZE_THREAD__
-  ForkJoin() { __tsan_release(&fork_); }
-  ~ForkJoin() { __tsan_acquire(&join_); }
-  void begin() { __tsan_acquire(&fork_); }
-  void end() { __tsan_release(&join_); }
-
- private:
-  char fork_ = 0, join_ = 0;
-#else
-  void begin() {}
-  void end() {}
-#endif
-};
 
 /// Calls part(loop, begin, end) for ranges that make up [0, count) on the threads there are. TBB's templates
 /// are compiled in one place because ThreadSanitizer must leave that place alone: it does not see how TBB
@@ -37,11 +15,8 @@ void for_each_range(size_t count, const void* loop, void (*part)(const void* loo
 /// Calls body(i) for i in [0, count) on the threads there are, in no stated order.
 template <typename Body>
 void parallel_for(size_t count, const Body& body) {
-  [[maybe_unused]] ForkJoin order;
   const auto loop = [&](size_t begin, size_t end) {
-    order.begin();
     for (size_t i = begin; i < end; ++i) body(i);
-    order.end();
   };
   for_each_range(count, &loop, [](const void* erased, size_t begin, size_t end) {
     (*static_cast<const decltype(loop)*>(erased))(begin, end);

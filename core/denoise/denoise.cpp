@@ -9,6 +9,7 @@
 #include "core/compare/metrics.h"
 #include "core/denoise/convolve.h"
 #include "core/denoise/denoise_filters.h"
+#include "core/denoise/oidn_library.h"
 #include "core/film/shrinkage.h"
 #include "vernier/error.h"
 
@@ -20,9 +21,7 @@ constexpr Denoiser table[] = {
     {"bilateral", "averages neighbors whose colours differ no more than their noise", denoise_bilateral},
     {"gaussian", "averages neighbors by distance, as far as the noise explains the change", denoise_gaussian},
     {"median", "median of the 5 x 5 pixels around, as far as the noise explains the change", denoise_median},
-#ifdef VERNIER_OIDN
     {"oidn", "Open Image Denoise, a trained network; does not use the error layer", denoise_oidn, true},
-#endif
 };
 
 constexpr int block = 32;  // pixels a side: wider than any filter's window
@@ -193,7 +192,16 @@ Image pixel_errors(const Image& variance, const Image& weights, const Image& cou
 
 }  // namespace
 
-std::span<const Denoiser> denoisers() { return table; }
+std::span<const Denoiser> denoisers() {
+  // The last one is somebody else's library, which may not be there.
+  return std::span(table).first(std::size(table) - (OidnLibrary::find() ? 0 : 1));
+}
+
+std::vector<std::string> denoiser_names() {
+  std::vector<std::string> names{"auto"};
+  for (const Denoiser& denoiser : table) names.emplace_back(denoiser.name);
+  return names;
+}
 
 size_t denoise_bytes_per_pixel() {
   constexpr size_t image = 3 * sizeof(float);
@@ -207,13 +215,9 @@ size_t denoise_bytes_per_pixel() {
 }
 
 const Denoiser& find_denoiser(std::string_view name) {
-#ifndef VERNIER_OIDN
-  if (name == "oidn")
-    throw Error(
-        ErrorKind::usage,
-        "this build has no filter 'oidn': install Open Image Denoise (www.openimagedenoise.org) where "
-        "CMake finds it and configure again with -DVERNIER_OIDN=ON");
-#endif
+  if (name == "auto") return OidnLibrary::find() ? *std::prev(std::end(table)) : *std::begin(table);
+  if (name == "oidn" && !OidnLibrary::find())
+    throw Error(ErrorKind::usage, "no filter 'oidn' here: " + OidnLibrary::why_not_found());
   return find_by_name(denoisers(), "filter", name);
 }
 

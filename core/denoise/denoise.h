@@ -3,7 +3,9 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "vernier/picture.h"
 
@@ -37,11 +39,14 @@ struct Denoiser {
 /// picture: the most of any filter of ours. A network takes what its library says.
 size_t denoise_bytes_per_pixel();
 
-/// All denoisers of this build (core/image/denoise.cpp).
+/// All denoisers that there are on this machine (core/denoise/denoise.cpp).
 std::span<const Denoiser> denoisers();
 
-/// The denoiser of that name; throws Error(usage) that lists the names there are, or says how a build with
-/// that one is made.
+/// All names that find_denoiser() may take, whether or not they are there.
+std::vector<std::string> denoiser_names();
+
+/// The denoiser of that name; of "auto" Open Image Denoise where its library is found, else the first. Throws
+/// Error(usage) that lists the names there are, or says why that one is not.
 const Denoiser& find_denoiser(std::string_view name);
 
 /// A picture denoised as two halves, so that its own error, what the filter blurs included, is known.

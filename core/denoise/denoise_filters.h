@@ -47,7 +47,8 @@ Image denoise_bilateral(const NoisyImage& noisy);
 Image denoise_median(const NoisyImage& noisy);
 Image denoise_nlm(const NoisyImage& noisy);
 
-/// Open Image Denoise, in builds that have it. Throws Error(usage) with what that library says is wrong.
+/// Open Image Denoise, where its library is found. Throws Error(usage) when it is not, or with what the
+/// library says is wrong.
 Image denoise_oidn(const NoisyImage& noisy);
 
 }  // namespace vernier

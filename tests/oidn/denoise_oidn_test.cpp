@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <OpenImageDenoise/oidn.hpp>
-
+#include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 
 #include "core/base/parallel.h"
 #include "core/denoise/denoise_filters.h"
+#include "core/denoise/oidn_library.h"
+#include "tests/oidn/double.h"
 #include "vernier/error.h"
 
-// The adapter to Open Image Denoise, compiled against a double of that library. What the network makes of a
-// picture only a build with the library can test (tests/core/denoise_test.cpp).
+// The adapter to Open Image Denoise with a double of that library in its place. What the network makes of a
+// picture is tested where the library is found: tests/core/denoise_test.cpp, apps/python/tests.
 
 namespace vernier {
 namespace {
@@ -25,11 +27,30 @@ Image picture(float value) {
   return image;
 }
 
+/// The double, named by the environment before anything looks for the library.
+test::OidnRecord& record() {
+  static test::OidnRecord* const result = [] {
+    setenv("VERNIER_OIDN", VERNIER_OIDN_DOUBLE, 1);
+    void* const handle = dlopen(VERNIER_OIDN_DOUBLE, RTLD_NOW);
+    const auto get = reinterpret_cast<OidnRecordFunction>(handle ? dlsym(handle, oidn_record_name) : nullptr);
+    if (!get) throw std::runtime_error("the double of Open Image Denoise cannot be loaded");
+    return get();
+  }();
+  return *result;
+}
+
 class DenoiseOidn : public testing::Test {
  protected:
-  DenoiseOidn() { oidn::record = {}; }
-  const std::vector<std::string>& calls() const { return oidn::record.calls; }
+  DenoiseOidn() { record() = {}; }
+  const std::vector<std::string>& calls() const { return record().calls; }
 };
+
+TEST_F(DenoiseOidn, IsFoundWhereTheEnvironmentSays) {
+  ASSERT_TRUE(OidnLibrary::find());
+  EXPECT_EQ(OidnLibrary::find()->path, VERNIER_OIDN_DOUBLE);
+  EXPECT_EQ(find_denoiser("auto").name, "oidn");
+  EXPECT_EQ(denoisers().back().name, "oidn");
+}
 
 TEST_F(DenoiseOidn, AsksInTheLibrarysOrder) {
   const ThreadLimit threads(2);
@@ -60,14 +81,14 @@ TEST_F(DenoiseOidn, SizesMustAgree) {
 
 TEST_F(DenoiseOidn, WhatFailsIsToldAndReleased) {
   for (const char* call : {"new CPU device", "commit device", "new filter RT", "commit filter", "execute"})
-    for (const oidn::Error failure : {oidn::Error::Unknown, oidn::Error::OutOfMemory}) {
-      oidn::record = {{}, call, failure};
+    for (const int failure : {1, 4}) {  // unknown, out of memory
+      record() = {{}, call, failure};
       try {
         denoise_oidn({picture(1)});
         ADD_FAILURE() << call;
       } catch (const Error& error) {
         EXPECT_THAT(error.what(), HasSubstr("Open Image Denoise: the double fails")) << call;
-        EXPECT_EQ(error.kind(), failure == oidn::Error::OutOfMemory ? ErrorKind::memory : ErrorKind::usage);
+        EXPECT_EQ(error.kind(), failure == 4 ? ErrorKind::memory : ErrorKind::usage);
       }
       std::string last = call;
       for (const std::string& next : calls())

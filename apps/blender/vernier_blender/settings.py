@@ -9,11 +9,12 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, Po
 
 _DENOISERS = [
     ("none", "None", "Keep the noise"),
+    ("auto", "Automatic", "Open Image Denoise where it is found, else Non-Local Means"),
     ("nlm", "Non-Local Means", "Patches of the picture that are alike are averaged"),
     ("bilateral", "Bilateral", "Nearby pixels of like colour are averaged"),
     ("gaussian", "Gaussian", "A plain blur that puts back what noise cannot explain"),
     ("median", "Median", "Of 5 x 5 pixels; puts back what noise cannot explain"),
-    ("oidn", "Open Image Denoise", "A trained network; only where Vernier was built with it")]
+    ("oidn", "Open Image Denoise", "A trained network, of libOpenImageDenoise.so.2: the Python package pyoidn has it")]
 _FILTERS = [
     ("box", "Box", "The plain mean over a pixel"),
     ("gaussian", "Gaussian", "Two pixels wide"),

@@ -2,6 +2,8 @@
 """What is done with pictures, and what is known of them."""
 
 import importlib.metadata
+import importlib.util
+import os
 import pathlib
 import struct
 import subprocess
@@ -65,6 +67,21 @@ def test_transparent_pictures_have_alpha(make_square, tmp_path):
     assert image.to_display().shape == (32, 48, 4)
     with pytest.raises(vernier.UsageError, match="no alpha"):
         image.save(tmp_path / "a.jpg")
+
+
+@pytest.mark.skipif(not importlib.util.find_spec("pyoidn"), reason="needs pyoidn: pip install .[denoise]")
+def test_open_image_denoise_itself(cornell, image, command, tmp_path):
+    clean = image.denoise("oidn")
+    truth = vernier.render(cornell, size=SIZE, spp=400, seed=1)
+    before, after = (vernier.compare(picture, truth)["relmse"]**0.5 for picture in (image, clean))
+    assert after < before / 1.5
+    assert clean.error.rel_rmse == pytest.approx(after, rel=0.5)
+    assert "pyoidn" in os.environ["VERNIER_OIDN"]
+    assert vernier.compare(image.denoise("auto"), clean)["relmse"] < 1e-6
+    image.save(tmp_path / "noisy.exr")
+    done = command("denoise", "noisy.exr", "-o", "clean.exr", "--filter", "oidn")
+    assert done.returncode == 0, done.stderr
+    assert vernier.compare(vernier.read(tmp_path / "clean.exr"), clean)["relmse"] < 1e-6
 
 
 def test_denoised_pictures_know_their_error(cornell, image):

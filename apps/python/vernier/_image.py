@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import importlib.util
 import math
 import os
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Mapping, NamedTuple, Sequence, Union
 
@@ -50,6 +52,14 @@ class Missing(NamedTuple):
 
     bent: MissingFigure
     depth: MissingFigure
+
+
+def _offer_oidn() -> None:
+    """Tells the library, which does not know Python's path, where the package pyoidn has Open Image Denoise."""
+    spec = importlib.util.find_spec("pyoidn")
+    folder = Path(spec.origin).parent / "oidn" / "lib" if spec and spec.origin else None
+    if folder and folder.is_dir():
+        os.environ.setdefault("VERNIER_OIDN", str(folder))
 
 
 _LAYER_NAMES = {"N": "normal", "Z": "depth", "P": "position", "UV": "uv"}
@@ -175,7 +185,13 @@ class Image:
         return self._picture.to_display(self._chosen(view), exposure, ocio)
 
     def denoise(self, filter: str = "nlm") -> Image:
-        """A filtered copy, with its own error; the layers that vernier.LAYERS_FOR_DENOISING names make it good and known."""
+        """A filtered copy, with its own error; the layers that vernier.LAYERS_FOR_DENOISING names make it good and known.
+
+        Args:
+            filter: one of ``vernier denoise --filter help``. "oidn" is Open Image Denoise, of the package pyoidn or where
+                docs/denoise.md says; "auto": that where it is found, else "nlm".
+        """
+        _offer_oidn()
         picture, error = self._picture.denoise(filter)
         before, after = (None, None) if error is None else (error[0], ErrorEstimate(*error[1:]))
         return Image(picture, error=after, missing=self.missing, stats=self.stats, notices=self.notices, view=self._view,
