@@ -26,6 +26,8 @@ constexpr Denoiser table[] = {
 
 constexpr int block = 32;  // pixels a side: wider than any filter's window
 constexpr int pool = 15;   // pixels a side over which the noise that is left is averaged
+constexpr int spread_pool =
+    5;  // pixels a side whose mean variance says what a pixel's is at least: a quarter
 
 /// Two independent measurements of one picture, as shrinkage_estimate wants them.
 struct Halves {
@@ -51,6 +53,11 @@ Halves noisy_halves(const NoisyImage& first, const NoisyImage& second) {
       for (size_t i = 0; i < error.values.size(); ++i)
         halves.variance.values[i] += square(error.values[i]) / 4;
     }
+  // Few samples may all have missed the light, and then say that they have no noise at all.
+  const std::vector<float> around(spread_pool, 1.f / spread_pool);
+  const Image mean = convolve(halves.variance, around, around);
+  for (size_t i = 0; i < mean.values.size(); ++i)
+    halves.variance.values[i] = std::max(halves.variance.values[i], mean.values[i] / 4);
   return halves;
 }
 
