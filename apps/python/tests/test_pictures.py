@@ -75,7 +75,7 @@ def test_open_image_denoise_itself(cornell, image, command, tmp_path):
     truth = vernier.render(cornell, size=SIZE, spp=400, seed=1)
     before, after = (vernier.compare(picture, truth)["relmse"]**0.5 for picture in (image, clean))
     assert after < before / 1.2
-    assert clean.error.rel_rmse == pytest.approx(after, rel=0.5)
+    assert clean.error.low < after < clean.error.high
     assert "pyoidn" in os.environ["VERNIER_OIDN"]
     assert vernier.compare(image.denoise("auto"), clean)["relmse"] < 1e-6
     image.save(tmp_path / "noisy.exr")
