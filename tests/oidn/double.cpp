@@ -19,6 +19,8 @@ struct OidnFilter {
   std::map<std::string, Values> images;
 };
 
+// The names are the library's.
+// NOLINTBEGIN(readability-identifier-naming)
 extern "C" {
 
 vernier::test::OidnRecord* vernier_oidn_record() { return &record; }
@@ -71,3 +73,4 @@ void oidnExecuteFilter(OidnFilter* filter) {
 }
 
 }  // extern "C"
+// NOLINTEND(readability-identifier-naming)
