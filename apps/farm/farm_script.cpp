@@ -133,10 +133,14 @@ std::string openjd_template(const FarmPlan& plan) {
       after = "Merge" + suffix;
     }
   }
-  const Json folder{
-      {"name", "Folder"},          {"type", "PATH"},
-      {"objectType", "DIRECTORY"}, {"dataFlow", "INOUT"},
-      {"default", plan.work},      {"description", "All commands are run in it; the machines share it."}};
+  // A default has to be relative; it counts from the folder of the template.
+  const Json folder{{"name", "Folder"},
+                    {"type", "PATH"},
+                    {"objectType", "DIRECTORY"},
+                    {"dataFlow", "INOUT"},
+                    {"default", "."},
+                    {"description", "All commands are run in it; the machines share it. It was " + plan.work +
+                                        ", which has to be said unless the template is there."}};
   const Json job{{"specificationVersion", "jobtemplate-2023-09"},
                  {"name", fmt::format("vernier {:.100}", one_line(plan.output))},
                  {"parameterDefinitions", Json::array({folder})},

@@ -172,6 +172,7 @@ TEST_F(FarmCommand, OpenJobDescription) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const json job = json::parse(result.out);
   EXPECT_EQ(job["specificationVersion"], "jobtemplate-2023-09");
+  EXPECT_EQ(job["parameterDefinitions"][0]["default"], ".") << "runners refuse absolute ones";
   ASSERT_EQ(job["steps"].size(), 2u);
   EXPECT_EQ(job["steps"][0]["parameterSpace"]["taskParameterDefinitions"][0]["range"], "1-2");
   EXPECT_EQ(job["steps"][1]["dependencies"][0]["dependsOn"], job["steps"][0]["name"]);
