@@ -18,6 +18,7 @@ WRAPPED = [
     (r"OpenImageIO/(?!hash\.h).*", r"(core/(image|denoise)/[^/]*|tests/core/.*)\.cpp"),
     (r"OpenColorIO/.*", r"(core/display/[^/]*|tests/core/.*)\.cpp"),
     (r"(draco/.*|meshoptimizer\.h)", r"(tests/)?scene/(import/)?[^/]*\.cpp"),
+    (r"avif/.*", r"core/image/avif\.cpp"),
     (r"zstd\.h", r"(core/ktx2/level|tests/core/.*)\.cpp"),
     (r"CLI/.*", r"apps/.*"),
     (r"httplib\.h", r"apps/serve/(http_server|routes|workers)\.(cpp|h)"),

@@ -9,12 +9,14 @@
 #include "materials/lambert.h"
 #include "materials/layered.h"
 #include "materials/mixture.h"
+#include "materials/rough_diffuse.h"
 
 namespace vernier {
 
 /// All models. Made at each hit, by value, with textures already read; the contract is in
 /// materials/bsdf_sample.h. A new model is a header of its own and an entry here.
-class Bsdf : public std::variant<Lambert, Glossy, Dielectric, Mixture, Layered, HenyeyGreenstein> {
+class Bsdf
+    : public std::variant<Lambert, Glossy, Dielectric, Mixture, Layered, HenyeyGreenstein, RoughDiffuse> {
  public:
   using variant::variant;
 

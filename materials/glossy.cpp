@@ -29,6 +29,7 @@ Glossy Glossy::coated_diffuse(const Fresnel& fresnel, const Ggx& ggx, const Diff
   result.bound_ = fresnel.bound();
   const float entering = 1 - result.bound_.mean_albedo(average(ggx));
   result.base_scale_ = entering > 0 ? 1 / entering : 0;
+  if (base.is_rough()) result.base_scale_ /= Eon::layer_gain(base.roughness);
   return result;
 }
 
@@ -38,6 +39,7 @@ Glossy Glossy::mix(const Glossy& coated_diffuse, const Glossy& conductor, float 
   result.fresnel_.f90 = lerp(metallic, coated_diffuse.fresnel_.f90, conductor.fresnel_.f90);
   result.base_.reflected *= 1 - metallic;
   result.base_.transmitted *= 1 - metallic;
+  result.base_.part = std::max(1 - metallic, 1 / 65535.f);  // it divides
   result.multiple_ = conductor.multiple_ * metallic;
   result.multiple_scale_ = conductor.multiple_scale_;
   return result;

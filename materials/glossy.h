@@ -3,6 +3,7 @@
 
 #include "core/sampling/warp.h"
 #include "materials/bsdf_sample.h"
+#include "materials/eon.h"
 #include "materials/fresnel.h"
 #include "materials/ggx.h"
 #include "materials/tables/ggx_energy.h"
@@ -14,6 +15,10 @@ struct DiffuseBase {
   Rgb reflected{0, 0, 0};
   Rgb transmitted{0, 0, 0};  ///< to the other side (glTF KHR_materials_diffuse_transmission)
   float eta = 1;  ///< index of the other side over that of the side of wo, where light is bent there too
+  Unit16 roughness = 0;  ///< of Eon; 0: Lambertian
+  Unit16 part = 1;       ///< of the surface that it lies under, which its colors have been multiplied by
+
+  bool is_rough() const { return !roughness.is_zero(); }
 };
 
 /// GGX facets with a diffuse base under them: glTF's metal, its non-metal, and any mixture of both, which all
@@ -25,7 +30,8 @@ struct DiffuseBase {
 /// (1 - E(wi)) normalized, which is reciprocal and loses nothing when the base is white; glTF 2.0 Appendix
 /// B's own example, 1 - F(h.v), is neither (Ashikhmin and Shirley 2000; Kelemen and Szirmay-Kalos 2001). E is
 /// that of the colour channel that reflects most, so that a coloured surface does not tint the base with its
-/// complement (KHR_materials_specular).
+/// complement (KHR_materials_specular). A rough base is not Lambertian: the same product then loses up to 2 %
+/// of the light where wo grazes, and gains none.
 class Glossy {
  public:
   static Glossy conductor(const Fresnel& fresnel, const Ggx& ggx);
@@ -51,7 +57,7 @@ class Glossy {
       if (wi.z <= 0) return std::nullopt;
       lobe = Lobe::glossy;
     } else {
-      wi = sample_cosine_hemisphere(v);
+      wi = base_.is_rough() ? Eon(base_.roughness).sample(wo, v) : sample_cosine_hemisphere(v);
       if (u >= view.facet_prob + view.reflect_prob) wi.z = -wi.z;
     }
     const BsdfEval value = eval(wo, wi, view);
@@ -60,13 +66,13 @@ class Glossy {
   }
 
   Rgb diffuse(const Vec3f& wo, const Vec3f& wi) const {
-    return scattered_by_base(seen_from(wo), toward(wi), wi.z);
+    return scattered_by_base(seen_from(wo), toward(wi), wo, wi);
   }
 
   Rgb albedo(const Vec3f& wo) const {
     const GgxAlbedo ggx = ggx_toward(wo);
     return fresnel_.albedo(ggx, wo.z) + multiple_ * ggx.energy_loss +
-           (base_.reflected + base_.transmitted) * (1 - bound_.albedo(ggx));
+           body_albedo(wo) * (1 - bound_.albedo(ggx));
   }
 
   SpecularRays specular(const Vec3f& wo) const {
@@ -109,19 +115,36 @@ class Glossy {
   /// What the facets do with light from wi, on either side.
   GgxAlbedo toward(const Vec3f& wi) const { return ggx_toward({wi.x, wi.y, std::abs(wi.z)}); }
 
-  Rgb scattered_by_base(const View& view, const GgxAlbedo& toward_wi, float cos_i) const {
-    const float base = view.base_weight * (1 - bound_.albedo(toward_wi)) * base_scale_ *
-                       cosine_hemisphere_pdf(std::abs(cos_i));
-    return cos_i < 0 ? base_.transmitted * (base / square(base_.eta)) : base_.reflected * base;
+  /// Light that a rough base transmits leaves as what it reflects does, mirrored by the surface.
+  Rgb scattered_by_base(const View& view, const GgxAlbedo& toward_wi, const Vec3f& wo,
+                        const Vec3f& wi) const {
+    float base = view.base_weight * (1 - bound_.albedo(toward_wi)) * base_scale_ *
+                 cosine_hemisphere_pdf(std::abs(wi.z));
+    if (base_.is_rough()) [[unlikely]] {
+      if (wi.z < 0) base /= square(base_.eta);
+      const Rgb& color = wi.z < 0 ? base_.transmitted : base_.reflected;
+      const Vec3f mirrored(wi.x, wi.y, std::abs(wi.z));
+      return Eon(base_.roughness)(color / base_.part, wo, mirrored) * (base * base_.part);
+    }
+    return wi.z < 0 ? base_.transmitted * (base / square(base_.eta)) : base_.reflected * base;
+  }
+
+  Rgb body_albedo(const Vec3f& wo) const {
+    if (!base_.is_rough()) return base_.reflected + base_.transmitted;
+    const Eon shape(base_.roughness);
+    return (shape.albedo(base_.reflected / base_.part, wo.z) +
+            shape.albedo(base_.transmitted / base_.part, wo.z)) *
+           base_.part;
   }
 
   BsdfEval eval(const Vec3f& wo, const Vec3f& wi, const View& view) const {
     const GgxAlbedo ggx = toward(wi);
     const float cosine = cosine_hemisphere_pdf(std::abs(wi.z));
-    const Rgb base = scattered_by_base(view, ggx, wi.z);
-    if (wi.z < 0) return {base, std::max(0.f, 1 - view.facet_prob - view.reflect_prob) * cosine};
+    const float drawn = base_.is_rough() ? Eon(base_.roughness).pdf(wo, std::abs(wi.z)) : cosine;
+    const Rgb base = scattered_by_base(view, ggx, wo, wi);
+    if (wi.z < 0) return {base, std::max(0.f, 1 - view.facet_prob - view.reflect_prob) * drawn};
     const float multiple = view.energy_loss * ggx.energy_loss * multiple_scale_ * cosine;
-    BsdfEval value{base + multiple_ * multiple, view.reflect_prob * cosine};
+    BsdfEval value{base + multiple_ * multiple, view.reflect_prob * drawn};
     if (ggx_.is_smooth()) return value;
     const Vec3f m = normalize(wo + wi);
     const float lambda_o = ggx_.lambda(wo);

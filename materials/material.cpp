@@ -35,8 +35,8 @@ Rgb dispersed_ior(const MaterialDescription& d) {
 
 /// Any of these makes the scattering depend on the place.
 bool has_bsdf_texture(const MaterialDescription& d) {
-  return d.base_color_texture || d.metallic_roughness_texture || d.specular_texture ||
-         d.specular_color_texture || d.transmission_texture || d.clearcoat_texture ||
+  return d.base_color_texture || d.metallic_roughness_texture || d.diffuse_roughness_texture ||
+         d.specular_texture || d.specular_color_texture || d.transmission_texture || d.clearcoat_texture ||
          d.clearcoat_roughness_texture || d.sheen_color_texture || d.sheen_roughness_texture ||
          d.anisotropy_texture || d.iridescence_texture || d.iridescence_thickness_texture ||
          d.diffuse_transmission_texture || d.diffuse_transmission_color_texture;
@@ -49,6 +49,15 @@ int texcoord_of_tangents(const MaterialDescription& d) {
 }
 
 }  // namespace
+
+Vec2f SurfaceAttributes::further_texcoord(int set) const {
+  if (!mesh || size_t(set) >= mesh->texcoord_set_count()) return {0, 0};
+  const auto& texcoords = mesh->texcoord_set(size_t(set));
+  if (texcoords.empty()) return {0, 0};
+  const auto& [a, b, c] = mesh->triangles[triangle];
+  const auto [u, v] = std::pair(barycentrics.x, barycentrics.y);
+  return texcoords[a] * (1 - u - v) + texcoords[b] * u + texcoords[c] * v;
+}
 
 Material::Material(const MaterialDescription& description, std::span<const Texture> textures, bool has_colors)
     : description_(description), textures_(textures), has_colors_(has_colors) {
@@ -112,7 +121,7 @@ Material::Side Material::side(const BsdfContext& context) const {
 Vec4f Material::read(const TextureUse& use, const SurfaceAttributes& attributes,
                      TexelEncoding encoding) const {
   if (!use) return {1, 1, 1, 1};
-  return textures_[size_t(use.texture)].sample(transform_uv(use, attributes.uv[size_t(use.texcoord)]),
+  return textures_[size_t(use.texture)].sample(transform_uv(use, attributes.texcoord(use.texcoord)),
                                                encoding);
 }
 
@@ -142,7 +151,10 @@ Bsdf Material::make_bsdf(const SurfaceAttributes& attributes, const BsdfContext&
   if (base.transmission >= 1 && base.metallic <= 0) return glass(base, context);
   if (base.transmission > 0) return mixture(base, context);
   const bool matte = base.dielectric.f90 <= 0 && !base.dielectric.film && is_black(base.body.transmitted);
-  if (matte && base.metallic <= 0) return Lambert{base.body.reflected};
+  if (matte && base.metallic <= 0) {
+    if (base.body.is_rough()) return RoughDiffuse{base.body.reflected, Eon(base.body.roughness)};
+    return Lambert{base.body.reflected};
+  }
   return glossy(base, base.metallic, context);
 }
 
@@ -165,6 +177,9 @@ Material::Base Material::read_base(const SurfaceAttributes& attributes, const Bs
   }
   base.metal = {base.color, 1, read_film(attributes)};
   base.body.reflected = base.color;
+  if (d.diffuse_roughness > 0)
+    base.body.roughness =
+        d.diffuse_roughness * read(d.diffuse_roughness_texture, attributes, TexelEncoding::linear).x;
   if (base.metallic < 1) read_dielectric(attributes, context, base);
   return base;
 }
@@ -236,9 +251,9 @@ Dielectric Material::glass(const Base& base, const BsdfContext& context) const {
 
 Mixture Material::mixture(const Base& base, const BsdfContext& context) const {
   const float clear = (1 - base.metallic) * base.transmission;
-  if (clear <= 0) return {glossy(base, base.metallic, context), {}, 0};
+  if (clear <= 0) return {glossy(base, base.metallic, context), 0, {}};
   const float metallic = clear < 1 ? base.metallic / (1 - clear) : 0;
-  return {glossy(base, metallic, context), glass(base, context), clear};
+  return {glossy(base, metallic, context), clear, glass(base, context)};
 }
 
 Rgb Material::emission(const SurfaceAttributes& attributes, bool front, float cos_theta) const {
@@ -254,10 +269,11 @@ Rgb Material::emission(const SurfaceAttributes& attributes, bool front, float co
 float Material::emissive_texels(const std::array<SurfaceAttributes, 3>& corners) const {
   const auto texels = [&](const TextureUse& use) {
     if (!use) return 0.f;
-    const auto at = [&](size_t i) { return transform_uv(use, corners[i].uv[size_t(use.texcoord)]); };
+    const auto at = [&](size_t i) { return transform_uv(use, corners[i].texcoord(use.texcoord)); };
     const Vec2f a = at(1) - at(0), b = at(2) - at(0);
-    const Image8& image = textures_[size_t(use.texture)].image();
-    return std::abs(a.x * b.y - a.y * b.x) / 2 * float(image.width) * float(image.height);
+    const float size = textures_[size_t(use.texture)].with_image(
+        [](const auto& image) { return float(image.width) * float(image.height); });
+    return std::abs(a.x * b.y - a.y * b.x) / 2 * size;
   };
   const float emitted = texels(description_.emissive_texture);
   return is_opaque() ? emitted : std::max(emitted, texels(description_.base_color_texture));

@@ -6,6 +6,7 @@
 
 #include "materials/bsdf.h"
 #include "vernier/material.h"
+#include "vernier/scene.h"
 #include "vernier/texture.h"
 
 namespace vernier {
@@ -14,6 +15,15 @@ namespace vernier {
 struct SurfaceAttributes {
   std::array<Vec2f, 2> uv{Vec2f(0, 0), Vec2f(0, 0)};
   Vec4f color{1, 1, 1, 1};
+  /// Where further sets of texture coordinates are found; null: there are none.
+  const MeshDescription* mesh = nullptr;
+  uint32_t triangle = 0;
+  Vec2f barycentrics{0, 0};
+
+  Vec2f texcoord(int set) const { return set < 2 ? uv[size_t(set)] : further_texcoord(set); }
+
+ private:
+  Vec2f further_texcoord(int set) const;
 };
 
 /// How light meets a surface, as far as its scattering depends on it.

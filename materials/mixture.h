@@ -10,8 +10,8 @@ namespace vernier {
 /// KHR_materials_transmission mix linearly in metallic and transmission, so the sum is exact.
 struct Mixture {
   Glossy glossy;
+  float glass_weight = 0;  ///< the rest is glossy; fills the gap between the two
   Dielectric glass;
-  float glass_weight = 0;  ///< the rest is glossy
 
   BsdfEval eval(const Vec3f& wo, const Vec3f& wi) const {
     if (glass_weight <= 0) return glossy.eval(wo, wi);

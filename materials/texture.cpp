@@ -2,6 +2,7 @@
 #include "vernier/texture.h"
 
 #include <array>
+#include <vector>
 
 namespace vernier {
 namespace {
@@ -18,6 +19,33 @@ struct CodeTables {
   }
 };
 const CodeTables tables;
+
+/// How codes of eight bits are read.
+struct Codes8 {
+  const float* color_table;
+
+  explicit Codes8(TexelEncoding encoding)
+      : color_table((encoding == TexelEncoding::srgb ? tables.srgb : tables.linear).data()) {}
+  float color(uint8_t code) const { return color_table[code]; }
+  static float number(uint8_t code) { return tables.linear[code]; }
+};
+
+/// How codes of sixteen bits are read. Their sRGB table is a quarter of a megabyte, made when first asked
+/// for.
+struct Codes16 {
+  const float* color_table = nullptr;  ///< null: linear
+
+  explicit Codes16(TexelEncoding encoding) {
+    static const std::vector<float> srgb = [] {
+      std::vector<float> table(65536);
+      for (size_t code = 0; code < table.size(); ++code) table[code] = srgb_to_linear(number(uint16_t(code)));
+      return table;
+    }();
+    if (encoding == TexelEncoding::srgb) color_table = srgb.data();
+  }
+  float color(uint16_t code) const { return color_table ? color_table[code] : number(code); }
+  static float number(uint16_t code) { return float(code) / 65535; }
+};
 
 /// Brings a coordinate into [0, 1]; anything not finite becomes 0.
 float wrapped(float coordinate, WrapMode mode) {
@@ -55,54 +83,62 @@ int nearest(float coordinate, int size, WrapMode mode) {
   return std::min(int(wrapped(coordinate, mode) * float(size)), size - 1);
 }
 
-template <int channels>
-Vec4f decoded(const uint8_t* texel, const float* table) {
+template <int channels, typename T, typename Codes>
+Vec4f decoded(const T* texel, const Codes& codes) {
   if constexpr (channels <= 2) {
-    const float grey = table[texel[0]];
-    return {grey, grey, grey, channels == 2 ? tables.linear[texel[channels - 1]] : 1.f};
+    const float grey = codes.color(texel[0]);
+    return {grey, grey, grey, channels == 2 ? Codes::number(texel[channels - 1]) : 1.f};
   } else {
-    return {table[texel[0]], table[texel[1]], table[texel[2]],
-            channels == 4 ? tables.linear[texel[channels - 1]] : 1.f};
+    return {codes.color(texel[0]), codes.color(texel[1]), codes.color(texel[2]),
+            channels == 4 ? Codes::number(texel[channels - 1]) : 1.f};
   }
 }
 
-template <int channels>
-Vec4f bilinear(const Image8& image, const Neighbours& x, const Neighbours& y, const float* table) {
+template <int channels, typename T, typename Codes>
+Vec4f bilinear(const BasicImage<T>& image, const Neighbours& x, const Neighbours& y, const Codes& codes) {
   const size_t row = size_t(image.width) * channels;
-  const uint8_t* upper = image.values.data() + size_t(y.first) * row;
-  const uint8_t* lower = image.values.data() + size_t(y.second) * row;
+  const T* upper = image.values.data() + size_t(y.first) * row;
+  const T* lower = image.values.data() + size_t(y.second) * row;
   const size_t left = size_t(x.first) * channels, right = size_t(x.second) * channels;
-  const Vec4f top = decoded<channels>(upper + left, table) * (1 - x.weight) +
-                    decoded<channels>(upper + right, table) * x.weight;
-  const Vec4f bottom = decoded<channels>(lower + left, table) * (1 - x.weight) +
-                       decoded<channels>(lower + right, table) * x.weight;
+  const Vec4f top = decoded<channels>(upper + left, codes) * (1 - x.weight) +
+                    decoded<channels>(upper + right, codes) * x.weight;
+  const Vec4f bottom = decoded<channels>(lower + left, codes) * (1 - x.weight) +
+                       decoded<channels>(lower + right, codes) * x.weight;
   return top * (1 - y.weight) + bottom * y.weight;
+}
+
+template <typename T, typename Codes>
+Vec4f interpolated(const BasicImage<T>& image, const Neighbours& x, const Neighbours& y, const Codes& codes) {
+  switch (image.channels) {
+    case 1:
+      return bilinear<1>(image, x, y, codes);
+    case 2:
+      return bilinear<2>(image, x, y, codes);
+    case 3:
+      return bilinear<3>(image, x, y, codes);
+    default:
+      return bilinear<4>(image, x, y, codes);
+  }
 }
 
 }  // namespace
 
 Vec4f Texture::sample(const Vec2f& uv, TexelEncoding encoding) const {
-  const Image8& image = *image_;
-  const float* table = (encoding == TexelEncoding::srgb ? tables.srgb : tables.linear).data();
-  Neighbours x, y;
-  if (filter_ == FilterMode::nearest) {
-    x.first = x.second = nearest(uv.x, image.width, wrap_s_);
-    y.first = y.second = nearest(uv.y, image.height, wrap_t_);
-    x.weight = y.weight = 0;
-  } else {
-    x = neighbors(uv.x, image.width, wrap_s_);
-    y = neighbors(uv.y, image.height, wrap_t_);
-  }
-  switch (image.channels) {
-    case 1:
-      return bilinear<1>(image, x, y, table);
-    case 2:
-      return bilinear<2>(image, x, y, table);
-    case 3:
-      return bilinear<3>(image, x, y, table);
-    default:
-      return bilinear<4>(image, x, y, table);
-  }
+  return with_image([&]<typename T>(const BasicImage<T>& image) {
+    Neighbours x, y;
+    if (filter_ == FilterMode::nearest) {
+      x.first = x.second = nearest(uv.x, image.width, wrap_s_);
+      y.first = y.second = nearest(uv.y, image.height, wrap_t_);
+      x.weight = y.weight = 0;
+    } else {
+      x = neighbors(uv.x, image.width, wrap_s_);
+      y = neighbors(uv.y, image.height, wrap_t_);
+    }
+    if constexpr (std::is_same_v<T, uint8_t>)
+      return interpolated(image, x, y, Codes8(encoding));
+    else
+      return interpolated(image, x, y, Codes16(encoding));
+  });
 }
 
 }  // namespace vernier

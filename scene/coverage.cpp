@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <map>
 
 #include "core/sampling/sampler.h"
@@ -23,13 +24,15 @@ float hash_to_unit(const Ray& ray, const RawHit& hit) {
 }
 
 /// Of all texels; filtering gives no less.
-float least_alpha(const Image8& image) {
+template <typename T>
+float least_alpha(const BasicImage<T>& image) {
   if (image.channels % 2 != 0) return 1;
   const auto channels = size_t(image.channels);
-  uint8_t least = 255;
+  constexpr T most = std::numeric_limits<T>::max();
+  T least = most;
   for (size_t i = channels - 1; i < image.values.size() && least > 0; i += channels)
     least = std::min(least, image.values[i]);
-  return float(least) / 255;
+  return float(least) / float(most);
 }
 
 }  // namespace
@@ -43,7 +46,9 @@ std::vector<bool> cut_instances(const SceneGeometry& geometry, std::span<const M
     if (const TextureUse& use = materials[i].base_color_texture;
         use && materials[i].alpha_mode != AlphaMode::opaque) {
       const auto [entry, is_new] = of_textures.try_emplace(use.texture);
-      if (is_new) entry->second = least_alpha(textures[size_t(use.texture)].image());
+      if (is_new)
+        entry->second =
+            textures[size_t(use.texture)].with_image([](const auto& image) { return least_alpha(image); });
       of_materials[i] *= entry->second;
     }
   }

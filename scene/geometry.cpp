@@ -229,6 +229,11 @@ SurfaceAttributes SceneGeometry::attributes(const SurfacePoint& point) const {
     if (!mesh.texcoords[set].empty())
       attributes.uv[set] = interpolate(mesh.texcoords[set], triangle, point.u, point.v);
   if (!mesh.colors.empty()) attributes.color = interpolate(mesh.colors, triangle, point.u, point.v);
+  if (!mesh.more_texcoords.empty()) [[unlikely]] {
+    attributes.mesh = &mesh;
+    attributes.triangle = point.primitive;
+    attributes.barycentrics = {point.u, point.v};
+  }
   return attributes;
 }
 
@@ -287,7 +292,7 @@ SceneGeometry::TangentFrame SceneGeometry::tangent_frame(const SurfacePoint& poi
     }
     handedness = mesh.tangents[triangle[0]].w;
   } else {
-    const auto& uv = mesh.texcoords[size_t(texcoord)];
+    const auto& uv = mesh.texcoord_set(size_t(texcoord));
     if (uv.empty()) {
       const Frame frame = Frame::from_normal(normal);
       return {frame.x, frame.y};

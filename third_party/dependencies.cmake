@@ -18,6 +18,9 @@ foreach(property INTERFACE_INCLUDE_DIRECTORIES INTERFACE_SYSTEM_INCLUDE_DIRECTOR
 endforeach()
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(webp REQUIRED IMPORTED_TARGET libwebp)
+pkg_check_modules(avif REQUIRED IMPORTED_TARGET libavif>=0.11)
+# It defines what tells Windows alone that the library is shared, which would keep others from our precompiled header.
+set_target_properties(PkgConfig::avif PROPERTIES INTERFACE_COMPILE_OPTIONS "")
 pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
 find_package(ZLIB REQUIRED)
 # Debian installs OpenColorIO's CMake files where CMake does not look and with a wrong prefix in them; its pkg-config

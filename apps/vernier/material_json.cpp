@@ -24,6 +24,7 @@ Json texture_names(const MaterialDescription& m) {
   const std::pair<const char*, const TextureUse*> slots[] = {
       {"base_color", &m.base_color_texture},
       {"metallic_roughness", &m.metallic_roughness_texture},
+      {"diffuse_roughness", &m.diffuse_roughness_texture},
       {"normal", &m.normal_texture},
       {"emissive", &m.emissive_texture},
       {"specular", &m.specular_texture},
@@ -53,6 +54,7 @@ Json material_json(const MaterialDescription& m) {
           {"base_color", vector_json(m.base_color)},
           {"metallic", number_json(m.metallic)},
           {"roughness", number_json(m.roughness)},
+          {"diffuse_roughness", number_json(m.diffuse_roughness)},
           {"normal_scale", number_json(m.normal_scale)},
           {"emissive", vector_json(m.emissive)},
           {"alpha_mode", name(m.alpha_mode)},

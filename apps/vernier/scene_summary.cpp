@@ -25,9 +25,11 @@ SceneCounts count(const SceneDescription& scene) {
     const Rgb& emissive = scene.materials[instance.material].emissive;
     if (emissive.x > 0 || emissive.y > 0 || emissive.z > 0) counts.emissive_triangles += triangles;
   }
-  std::set<const Image8*> images;
+  std::set<const void*> images;
   for (const auto& texture : scene.textures)
-    if (images.insert(&texture.image()).second) counts.texture_bytes += texture.image().values.size();
+    texture.with_image([&](const auto& image) {
+      if (images.insert(&image).second) counts.texture_bytes += image.values.size() * sizeof(image.values[0]);
+    });
   return counts;
 }
 

@@ -7,9 +7,12 @@
 #include <webp/decode.h>
 
 #include <algorithm>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "core/image/avif.h"
 #include "core/image/png_repair.h"
 #include "vernier/error.h"
 
@@ -43,43 +46,91 @@ Image8 decode_webp(std::span<const uint8_t> bytes, const std::string& name, bool
   return image;
 }
 
-template <typename T>
-BasicImage<T> convert(Image8 image) {
-  if constexpr (std::is_same_v<T, uint8_t>) return image;
-  BasicImage<T> converted(image.width, image.height, image.channels);
-  std::transform(image.values.begin(), image.values.end(), converted.values.begin(),
-                 [](uint8_t value) { return T(value) / 255; });
-  return converted;
+/// Codes as numbers in [0, 1].
+Image to_floats(const CodedImage& coded) {
+  return std::visit(
+      []<typename T>(const BasicImage<T>& image) {
+        Image converted(image.width, image.height, image.channels);
+        std::transform(image.values.begin(), image.values.end(), converted.values.begin(),
+                       [](T value) { return float(value) / float(std::numeric_limits<T>::max()); });
+        return converted;
+      },
+      coded);
 }
 
-template <typename T>
-BasicImage<T> read_all_channels(OIIO::ImageInput& input, const std::string& name) {
-  const OIIO::ImageSpec spec = input.spec();
-  BasicImage<T> image(spec.width, spec.height, spec.nchannels);
-  input.threads(1);  // callers decode many images at once
-  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::BaseTypeFromC<T>::value, image.values.data()))
-    throw input_error(name, fmt::format("cannot decode image, it is damaged: {}", input.geterror()));
+/// Many files of sixteen bits were made from eight: then that is what there is to keep.
+CodedImage narrowed(Image16 image) {
+  constexpr uint16_t step = 65535 / 255;
+  const auto& values = image.values;
+  if (std::any_of(values.begin(), values.end(), [](uint16_t value) { return value % step != 0; }))
+    return image;
+  Image8 narrow(image.width, image.height, image.channels);
+  std::transform(values.begin(), values.end(), narrow.values.begin(),
+                 [](uint16_t value) { return uint8_t(value / step); });
+  return narrow;
+}
+
+/// A PNG or JPEG in memory, opened.
+class MemoryInput {
+ public:
+  MemoryInput(std::span<const uint8_t> bytes, const ImageHeader& header, const std::string& name,
+              bool in_part)
+      : name_(name),
+        completed_(in_part && header.format == std::string_view("png") ? complete_png(bytes, name)
+                                                                       : std::vector<uint8_t>()),
+        memory_(completed_.empty() ? bytes.data() : completed_.data(),
+                completed_.empty() ? bytes.size() : completed_.size()),
+        input_(OIIO::ImageInput::create(header.format)) {
+    if (!input_)
+      throw input_error(
+          name, fmt::format("this OpenImageIO cannot read {} images: {}", header.format, OIIO::geterror()));
+    input_->set_ioproxy(&memory_);
+    OIIO::ImageSpec spec, config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    // The name's extension must be the format's: some readers check it.
+    if (!input_->open(fmt::format("memory.{}", header.format), spec, config))
+      throw input_error(name, fmt::format("cannot decode {} image: {}", header.format, input_->geterror()));
+  }
+
+  bool has_sixteen_bits() const { return input_->spec().format == OIIO::TypeDesc::UINT16; }
+
+  template <typename T>
+  BasicImage<T> read() {
+    const OIIO::ImageSpec spec = input_->spec();
+    BasicImage<T> image(spec.width, spec.height, spec.nchannels);
+    input_->threads(1);  // callers decode many images at once
+    if (!input_->read_image(0, 0, 0, spec.nchannels, OIIO::BaseTypeFromC<T>::value, image.values.data()))
+      throw input_error(name_, fmt::format("cannot decode image, it is damaged: {}", input_->geterror()));
+    return image;
+  }
+
+ private:
+  const std::string& name_;
+  std::vector<uint8_t> completed_;
+  OIIO::Filesystem::IOMemReader memory_;
+  OIIO::ImageInput::unique_ptr input_;
+};
+
+/// By the libraries that are called here without OpenImageIO; empty: it is none of theirs.
+std::optional<CodedImage> decode_directly(std::span<const uint8_t> bytes, const ImageHeader& header,
+                                          const std::string& name, bool in_part) {
+  const std::string_view format = header.format;
+  if (format == "webp") return decode_webp(bytes, name, in_part);
+  if (format == "avif") return decode_avif(bytes, header, name);
+  return std::nullopt;
+}
+
+CodedImage decode(std::span<const uint8_t> bytes, const ImageHeader& header, const std::string& name,
+                  bool in_part) {
+  CodedImage image = [&]() -> CodedImage {
+    if (auto decoded = decode_directly(bytes, header, name, in_part)) return std::move(*decoded);
+    MemoryInput input(bytes, header, name, in_part);
+    if (input.has_sixteen_bits()) return narrowed(input.read<uint16_t>());
+    return input.read<uint8_t>();
+  }();
+  const int channels = std::visit([](const auto& coded) { return coded.channels; }, image);
+  if (channels > 4) throw input_error(name, fmt::format("image has {} channels; expected 1 to 4", channels));
   return image;
-}
-
-template <typename T>
-BasicImage<T> decode(std::span<const uint8_t> bytes, const ImageHeader& header, const std::string& name,
-                     bool in_part) {
-  if (header.format == std::string_view("webp")) return convert<T>(decode_webp(bytes, name, in_part));
-  std::vector<uint8_t> completed;
-  if (in_part && header.format == std::string_view("png")) bytes = completed = complete_png(bytes, name);
-  OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
-  const auto input = OIIO::ImageInput::create(header.format);
-  if (!input)
-    throw input_error(
-        name, fmt::format("this OpenImageIO cannot read {} images: {}", header.format, OIIO::geterror()));
-  input->set_ioproxy(&memory);
-  OIIO::ImageSpec spec, config;
-  config.attribute("oiio:UnassociatedAlpha", 1);
-  // The name's extension must be the format's: some readers check it.
-  if (!input->open(fmt::format("memory.{}", header.format), spec, config))
-    throw input_error(name, fmt::format("cannot decode {} image: {}", header.format, input->geterror()));
-  return read_all_channels<T>(*input, name);
 }
 
 std::string description_of_damage(const ImageHeader& header, size_t size) {
@@ -87,36 +138,32 @@ std::string description_of_damage(const ImageHeader& header, size_t size) {
                      header.format, size);
 }
 
-/// Of a file that is whole.
-template <typename T>
-BasicImage<T> decode_whole(std::span<const uint8_t> bytes, const ImageHeader& header, const std::string& name,
-                           const ImageLimits& limits) {
-  check_image_size(name, header.width, header.height, 1, bytes.size(), limits);
+void check_size(std::span<const uint8_t> bytes, const ImageHeader& header, const std::string& name,
+                const ImageLimits& limits) {
+  check_image_size(name, header.width, header.height, 1, bytes.size(), limits, header.most_pixels_per_byte);
+}
+
+/// Throws unless the file is whole.
+void check_whole(std::span<const uint8_t> bytes, const ImageHeader& header, const std::string& name,
+                 const ImageLimits& limits) {
+  check_size(bytes, header, name, limits);
   if (!header.intact) throw input_error(name, description_of_damage(header, bytes.size()));
-  return decode<T>(bytes, header, name, false);
 }
 
 ImageHeader parse_header(std::span<const uint8_t> bytes, const std::string& name) {
   const auto header = parse_image_header(bytes);
   if (!header)
-    throw input_error(name, bytes.empty() ? "image has no bytes"
-                                          : "not a PNG, JPEG or WebP image; convert it to one of these");
+    throw input_error(name, bytes.empty()
+                                ? "image has no bytes"
+                                : "not a PNG, JPEG, WebP or AVIF image; convert it to one of these");
   return *header;
-}
-
-Image8 checked(Image8 image, const std::string& name) {
-  if (image.channels > 4)
-    throw input_error(name, fmt::format("image has {} channels; expected 1 to 4", image.channels));
-  return image;
 }
 
 }  // namespace
 
 void check_image_size(const std::string& name, int64_t width, int64_t height, int channels,
-                      uint64_t file_bytes, const ImageLimits& limits) {
+                      uint64_t file_bytes, const ImageLimits& limits, int64_t most_values_per_byte) {
   constexpr int64_t always_fine = int64_t{1} << 24;
-  // No format here packs more than some 1,500 values a byte: deflate 1,032, JPEG a bit per block.
-  constexpr int64_t max_values_per_byte = 4096;
   constexpr int max_channels = 1024;
   if (width <= 0 || height <= 0)
     throw input_error(name, fmt::format("image of size {}x{} has no pixels", width, height));
@@ -127,7 +174,7 @@ void check_image_size(const std::string& name, int64_t width, int64_t height, in
   if (channels < 1 || channels > max_channels)
     throw input_error(
         name, fmt::format("image with {} channels cannot be used; expected 1 to {}", channels, max_channels));
-  if (width * height > always_fine && uint64_t(width * height * channels / max_values_per_byte) > file_bytes)
+  if (width * height > always_fine && uint64_t(width * height * channels / most_values_per_byte) > file_bytes)
     throw input_error(
         name, fmt::format("image header claims {}x{} pixels but the file has only {} bytes; it is damaged "
                           "or hostile",
@@ -136,21 +183,25 @@ void check_image_size(const std::string& name, int64_t width, int64_t height, in
 
 Image decode_image(std::span<const uint8_t> bytes, const ImageHeader& header, const std::string& name,
                    const ImageLimits& limits) {
-  return decode_whole<float>(bytes, header, name, limits);
+  check_whole(bytes, header, name, limits);
+  if (const auto coded = decode_directly(bytes, header, name, false)) return to_floats(*coded);
+  return MemoryInput(bytes, header, name, false).read<float>();
 }
 
-PartialImage8 decode_partial_image8(std::span<const uint8_t> bytes, const std::string& name,
-                                    const ImageLimits& limits) {
+PartialImage decode_partial_image(std::span<const uint8_t> bytes, const std::string& name,
+                                  const ImageLimits& limits) {
   const ImageHeader header = parse_header(bytes, name);
-  if (!header.cut_off || header.intact)
-    return {checked(decode_whole<uint8_t>(bytes, header, name, limits), name), {}};
-  check_image_size(name, header.width, header.height, 1, bytes.size(), limits);
-  return {checked(decode<uint8_t>(bytes, header, name, true), name),
+  if (!header.cut_off || header.intact) return {decode_whole_image(bytes, name, limits), {}};
+  check_size(bytes, header, name, limits);
+  return {decode(bytes, header, name, true),
           description_of_damage(header, bytes.size()) + "; what it holds is used"};
 }
 
-Image8 decode_image8(std::span<const uint8_t> bytes, const std::string& name, const ImageLimits& limits) {
-  return checked(decode_whole<uint8_t>(bytes, parse_header(bytes, name), name, limits), name);
+CodedImage decode_whole_image(std::span<const uint8_t> bytes, const std::string& name,
+                              const ImageLimits& limits) {
+  const ImageHeader header = parse_header(bytes, name);
+  check_whole(bytes, header, name, limits);
+  return decode(bytes, header, name, false);
 }
 
 }  // namespace vernier

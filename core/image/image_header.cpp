@@ -2,7 +2,9 @@
 #include "core/image/image_header.h"
 
 #include <algorithm>
+#include <array>
 #include <boost/crc.hpp>
+#include <limits>
 #include <string_view>
 
 namespace vernier {
@@ -99,6 +101,79 @@ ImageHeader parse_webp(Bytes bytes) {
   return header;
 }
 
+/// A box of the ISO base media file format (ISO/IEC 14496-12, 4.2).
+struct Box {
+  std::string_view type;
+  Bytes content;
+  size_t size = 0;  ///< with its head
+};
+
+/// The box at the beginning; empty when it does not lie within the bytes.
+std::optional<Box> first_box(Bytes bytes) {
+  if (bytes.size() < 8) return std::nullopt;
+  auto size = uint64_t(big_endian(bytes, 0, 4));
+  size_t head = 8;
+  if (size == 0) size = bytes.size();  // to the end of the file
+  if (size == 1) {
+    if (bytes.size() < 16) return std::nullopt;
+    size = uint64_t(big_endian(bytes, 8, 8));
+    head = 16;
+  }
+  if (size < head || size > bytes.size()) return std::nullopt;
+  return Box{{reinterpret_cast<const char*>(bytes.data()) + 4, 4},
+             bytes.subspan(head, size_t(size) - head),
+             size_t(size)};
+}
+
+/// Visits the boxes one after the other as far as they are whole; true: they fill the bytes.
+template <typename Visit>
+bool for_each_box(Bytes bytes, const Visit& visit) {
+  while (!bytes.empty()) {
+    const auto box = first_box(bytes);
+    if (!box) return false;
+    visit(*box);
+    bytes = bytes.subspan(box->size);
+  }
+  return true;
+}
+
+/// The largest of the sizes (ispe) in the boxes meta, iprp and ipco, each in the one before: those of parts,
+/// thumbnails and alpha are no larger than the picture's.
+void find_avif_size(const Box& box, ImageHeader& header, size_t depth = 0) {
+  constexpr std::array<std::string_view, 4> way{"meta", "iprp", "ipco", "ispe"};
+  if (box.type != way[depth]) return;
+  const size_t version = box.type == "meta" ? 4 : 0;
+  if (box.type != "ispe") {
+    if (box.content.size() >= version)
+      for_each_box(box.content.subspan(version),
+                   [&](const Box& inner) { find_avif_size(inner, header, depth + 1); });
+    return;
+  }
+  if (box.content.size() < 12) return;
+  const int64_t width = big_endian(box.content, 4, 4), height = big_endian(box.content, 8, 4);
+  constexpr int64_t most = std::numeric_limits<int32_t>::max();
+  if (width > most || height > most || width * height <= header.width * header.height) return;
+  header.width = width;
+  header.height = height;
+}
+
+// AVIF (AV1 Image File Format, 1.1): boxes, the first of which (ftyp) names the brand. A picture of one color
+// of 8192 x 8192 pixels has 1,078 bytes.
+ImageHeader parse_avif(Bytes bytes) {
+  ImageHeader header{"avif"};
+  header.most_pixels_per_byte = 1 << 17;
+  header.intact = for_each_box(bytes, [&](const Box& box) { find_avif_size(box, header); });
+  return header;
+}
+
+bool is_avif(Bytes bytes) {
+  if (bytes.size() < 16 || !has_text(bytes, 4, "ftyp")) return false;
+  const size_t end = std::min<size_t>(bytes.size(), size_t(big_endian(bytes, 0, 4)));
+  for (size_t brand = 8; brand + 4 <= end; brand += 4)
+    if (has_text(bytes, brand, "avif")) return true;
+  return false;
+}
+
 }  // namespace
 
 uint32_t png_checksum(std::span<const uint8_t> type_and_data) {
@@ -111,6 +186,7 @@ std::optional<ImageHeader> parse_image_header(std::span<const uint8_t> bytes) {
   if (has_text(bytes, 0, "\x89PNG\r\n\x1a\n")) return parse_png(bytes);
   if (has_text(bytes, 0, "\xff\xd8\xff")) return parse_jpeg(bytes);
   if (has_text(bytes, 0, "RIFF") && has_text(bytes, 8, "WEBP")) return parse_webp(bytes);
+  if (is_avif(bytes)) return parse_avif(bytes);
   return std::nullopt;
 }
 

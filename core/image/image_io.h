@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "vernier/image.h"
@@ -14,8 +15,8 @@
 namespace vernier {
 
 /// Caps that an image header must satisfy before anything is decoded. A picture of more than 2^24 pixels
-/// whose file has under a 4096th as many bytes as values is refused too, so that a small hostile file cannot
-/// ask for gigabytes.
+/// whose file has under a 4096th as many bytes as values (AVIF: a 131,072nd) is refused too, so that a small
+/// hostile file cannot ask for gigabytes.
 struct ImageLimits {
   int64_t max_pixels = int64_t{1} << 28;
 };
@@ -37,20 +38,25 @@ Image whole_picture(const Image& part, const PicturePlace& place);
 /// hold them as lines of their description.
 std::optional<Metadata> read_image_texts(const std::string& path);
 
+/// A picture in the bits of its file.
+using CodedImage = std::variant<Image8, Image16>;
+
 /// A picture as far as its file has it.
-struct PartialImage8 {
-  Image8 image;
+struct PartialImage {
+  CodedImage image;
   std::string damage;  ///< empty: whole; else what is wrong with the file: "the JPEG file is truncated, ..."
 };
 
-/// Decodes a PNG, JPEG or WebP held in memory to 8 bits a channel, in the file's own encoding, 1 to 4
-/// channels, unassociated alpha; sixteen bits are rounded to eight. `name` is what errors call it. What a
-/// truncated file still holds is shown, as browsers do; it is an error when that is nothing at all.
-PartialImage8 decode_partial_image8(std::span<const uint8_t> bytes, const std::string& name,
-                                    const ImageLimits& limits = {});
+/// Decodes a PNG, JPEG, WebP or AVIF held in memory, in the file's own encoding, 1 to 4 channels,
+/// unassociated alpha. Files with more than 8 bits a channel give 16, unless all of their codes are eight-bit
+/// ones spread over sixteen. `name` is what errors call it. What a truncated file still holds is shown, as
+/// browsers do; it is an error when that is nothing at all, and of AVIF.
+PartialImage decode_partial_image(std::span<const uint8_t> bytes, const std::string& name,
+                                  const ImageLimits& limits = {});
 
 /// The same of a whole file; a truncated one is an error.
-Image8 decode_image8(std::span<const uint8_t> bytes, const std::string& name, const ImageLimits& limits = {});
+CodedImage decode_whole_image(std::span<const uint8_t> bytes, const std::string& name,
+                              const ImageLimits& limits = {});
 
 /// Largest value of a 16-bit float.
 inline constexpr float largest_half = 65504;

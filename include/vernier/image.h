@@ -32,6 +32,8 @@ struct BasicImage {
 using Image = BasicImage<float>;
 /// Eight-bit picture as decoded from a texture file, in the file's own encoding; 1 to 4 channels.
 using Image8 = BasicImage<uint8_t>;
+/// The same of files that have more than eight bits a channel.
+using Image16 = BasicImage<uint16_t>;
 
 inline Rgb rgb_at(const Image& image, int x, int y) {
   const float* p = image.pixel(x, y);

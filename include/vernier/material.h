@@ -11,7 +11,7 @@ namespace vernier {
 /// A texture as a material slot uses it: uv' = rotation(scale * uv) + offset (KHR_texture_transform).
 struct TextureUse {
   int texture = -1;  ///< index into SceneDescription::textures; -1: none
-  int texcoord = 0;  ///< 0 or 1: MeshDescription::texcoords
+  int texcoord = 0;  ///< of MeshDescription::texcoord_set
   Vec2f offset{0, 0}, scale{1, 1};
   float rotation = 0;  ///< radians, counter-clockwise as KHR_texture_transform defines it
 
@@ -29,6 +29,8 @@ struct MaterialDescription {
   TextureUse base_color_texture;  ///< RGB sRGB-encoded
   float metallic = 1, roughness = 1;
   TextureUse metallic_roughness_texture;  ///< G roughness, B metallic
+  float diffuse_roughness = 0;            ///< KHR_materials_diffuse_roughness
+  TextureUse diffuse_roughness_texture;   ///< R
   TextureUse normal_texture;
   float normal_scale = 1;
 

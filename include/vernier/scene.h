@@ -41,6 +41,17 @@ struct MeshDescription {
   std::array<std::vector<Vec2f>, 2> texcoords;
   std::vector<Vec4f> colors;  ///< linear RGBA, multiplies the base colour
   std::vector<MeshShape> moments{};
+  /// Sets 2 and up. The first two are interpolated with every point that needs any, these where a texture
+  /// reads them.
+  std::vector<std::vector<Vec2f>> more_texcoords{};
+
+  size_t texcoord_set_count() const { return texcoords.size() + more_texcoords.size(); }
+  std::vector<Vec2f>& texcoord_set(size_t n) {
+    return n < texcoords.size() ? texcoords[n] : more_texcoords[n - texcoords.size()];
+  }
+  const std::vector<Vec2f>& texcoord_set(size_t n) const {
+    return n < texcoords.size() ? texcoords[n] : more_texcoords[n - texcoords.size()];
+  }
 };
 
 /// A mesh placed in the world. Several may share a mesh.

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <utility>
+#include <variant>
 
 #include "vernier/export.h"
 #include "vernier/image.h"
@@ -14,24 +15,37 @@ enum class WrapMode { repeat, mirrored_repeat, clamp_to_edge };
 enum class FilterMode { nearest, linear };
 enum class TexelEncoding { linear, srgb };
 
-/// Eight-bit picture read at (u, v): u to the right, v downwards, (0,0) the outer corner of the first texel,
-/// as glTF has it. Pixels are shared between textures of one image and stay in 8 bits.
+/// The pixels of a texture, in the bits of its file.
+using TexturePixels = std::variant<std::shared_ptr<const Image8>, std::shared_ptr<const Image16>>;
+
+/// Picture read at (u, v): u to the right, v downwards, (0,0) the outer corner of the first texel, as glTF
+/// has it. Pixels are shared between textures of one image and stay in the bits that they came in.
 class VERNIER_API Texture {
  public:
-  Texture(std::shared_ptr<const Image8> image, WrapMode wrap_s, WrapMode wrap_t, FilterMode filter)
-      : image_(std::move(image)), wrap_s_(wrap_s), wrap_t_(wrap_t), filter_(filter) {}
+  Texture(TexturePixels pixels, WrapMode wrap_s, WrapMode wrap_t, FilterMode filter)
+      : pixels_(std::move(pixels)), wrap_s_(wrap_s), wrap_t_(wrap_t), filter_(filter) {}
 
   /// RGBA in [0,1]; missing channels: grey is repeated to RGB, alpha is 1. With `srgb`, RGB texels are
   /// decoded to linear light before filtering; alpha never is. Not finite coordinates read as 0.
   Vec4f sample(const Vec2f& uv, TexelEncoding encoding) const;
 
-  const Image8& image() const { return *image_; }
+  const TexturePixels& pixels() const { return pixels_; }
+  /// What `visit` makes of the picture, an Image8 or an Image16.
+  template <typename Visit>
+  auto with_image(const Visit& visit) const {
+    return std::visit([&](const auto& image) { return visit(*image); }, pixels_);
+  }
+  /// The picture of a texture known to have codes of type T.
+  template <typename T = uint8_t>
+  const BasicImage<T>& image() const {
+    return *std::get<std::shared_ptr<const BasicImage<T>>>(pixels_);
+  }
   WrapMode wrap_s() const { return wrap_s_; }
   WrapMode wrap_t() const { return wrap_t_; }
   FilterMode filter() const { return filter_; }
 
  private:
-  std::shared_ptr<const Image8> image_;
+  TexturePixels pixels_;
   WrapMode wrap_s_, wrap_t_;
   FilterMode filter_;
 };

@@ -58,6 +58,7 @@ constexpr AnimatedProperty properties[] = {
     {"/materials/{}/extensions/KHR_materials_clearcoat/clearcoatFactor"},
     {"/materials/{}/extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor"},
     {"/materials/{}/extensions/KHR_materials_clearcoat/clearcoatNormalTexture/scale"},
+    {"/materials/{}/extensions/KHR_materials_diffuse_roughness/diffuseRoughnessFactor"},
     {"/materials/{}/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionFactor"},
     {"/materials/{}/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorFactor", 3},
     {"/materials/{}/extensions/KHR_materials_dispersion/dispersion"},

@@ -75,7 +75,7 @@ Vec3d transformed_normal(const Vec3f& n, const Vec3d& x, const Vec3d& y, const V
 
 }  // namespace
 
-void morph(const PrimitiveData& data, const std::vector<double>& weights, const std::array<int, 2>& texcoords,
+void morph(const PrimitiveData& data, const std::vector<double>& weights, const std::vector<int>& texcoords,
            MeshDescription& mesh) {
   const auto old_normals = mesh.normals;
   bool colors_change = false;
@@ -89,9 +89,9 @@ void morph(const PrimitiveData& data, const std::vector<double>& weights, const 
       for (size_t i = 0; i < deltas.size(); ++i)
         mesh.tangents[i] += Vec4f(deltas[i].x, deltas[i].y, deltas[i].z, 0) * weight;
     }
-    for (size_t set = 0; set < mesh.texcoords.size(); ++set)
-      if (!mesh.texcoords[set].empty())
-        add_scaled(mesh.texcoords[set],
+    for (size_t set = 0; set < mesh.texcoord_set_count(); ++set)
+      if (!mesh.texcoord_set(set).empty())
+        add_scaled(mesh.texcoord_set(set),
                    data.read_target<Vec2f>(target, fmt::format("TEXCOORD_{}", texcoords[set])), weight);
     const auto color_deltas = mesh.colors.empty() ? mesh.colors : data.read_target_colors(target);
     add_scaled(mesh.colors, color_deltas, weight);

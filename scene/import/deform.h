@@ -15,7 +15,7 @@ namespace vernier {
 /// Adds the primitive's morph targets, each times its weight, to the mesh's attributes. `texcoords`: the n of
 /// the TEXCOORD_n that are the mesh's sets. Afterwards normals and tangents are of unit length again and
 /// morphed colours in [0, 1] (glTF 2.0, 3.7.2.2). Throws Error(input).
-void morph(const PrimitiveData& data, const std::vector<double>& weights, const std::array<int, 2>& texcoords,
+void morph(const PrimitiveData& data, const std::vector<double>& weights, const std::vector<int>& texcoords,
            MeshDescription& mesh);
 
 /// Matrices that move vertices bound to each joint of a skin into the world (row vectors). Throws

@@ -95,6 +95,8 @@ struct GltfSchema {
                                   {"iridescenceThicknessTexture", texture}},
                                  {}};
   const ObjectSchema dispersion{{{"dispersion", number()}}, {}};
+  const ObjectSchema diffuse_roughness{
+      {{"diffuseRoughnessFactor", number()}, {"diffuseRoughnessTexture", texture}}, {}};
   const ObjectSchema diffuse_transmission{{{"diffuseTransmissionFactor", number()},
                                            {"diffuseTransmissionTexture", texture},
                                            {"diffuseTransmissionColorFactor", numbers(3)},
@@ -110,6 +112,7 @@ struct GltfSchema {
   const ObjectSchema material_extensions{
       {{"KHR_materials_anisotropy", object(anisotropy)},
        {"KHR_materials_clearcoat", object(clearcoat)},
+       {"KHR_materials_diffuse_roughness", object(diffuse_roughness)},
        {"KHR_materials_diffuse_transmission", object(diffuse_transmission)},
        {"KHR_materials_dispersion", object(dispersion)},
        {"KHR_materials_emissive_strength", object(emissive_strength)},
@@ -151,8 +154,10 @@ struct GltfSchema {
                               {"name", text()}},
                              {}};
   const ObjectSchema texture_source{{{"source", index_into("/images"), required}}, {}};
-  const ObjectSchema texture_extensions{
-      {{"EXT_texture_webp", object(texture_source)}, {"KHR_texture_basisu", object(texture_source)}}, {}};
+  const ObjectSchema texture_extensions{{{"EXT_texture_avif", object(texture_source)},
+                                         {"EXT_texture_webp", object(texture_source)},
+                                         {"KHR_texture_basisu", object(texture_source)}},
+                                        {}};
   const ObjectSchema texture_object{{{"sampler", index_into("/samplers")},
                                      {"source", index_into("/images")},
                                      {"name", text()},

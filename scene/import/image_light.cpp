@@ -16,15 +16,17 @@ namespace {
 constexpr const char* extension_name = "EXT_lights_image_based";
 
 /// Linear radiance of a face. Four channels are RGBD: colour over alpha (HDR Images, RGBD).
-Image to_radiance(const Image8& pixels) {
+template <typename T>
+Image to_radiance(const BasicImage<T>& pixels) {
+  constexpr float most = std::numeric_limits<T>::max();
   Image face(pixels.width, pixels.height, 3);
   const auto is_gray = pixels.channels < 3;
   for (int y = 0; y < face.height; ++y)
     for (int x = 0; x < face.width; ++x) {
-      const uint8_t* texel = pixels.pixel(x, y);
-      const float divisor = pixels.channels == 4 ? float(texel[3]) / 255 : 1;
+      const T* texel = pixels.pixel(x, y);
+      const float divisor = pixels.channels == 4 ? float(texel[3]) / most : 1;
       for (int c = 0; c < 3; ++c) {
-        const float light = srgb_to_linear(float(texel[is_gray ? 0 : c]) / 255);
+        const float light = srgb_to_linear(float(texel[is_gray ? 0 : c]) / most);
         face.pixel(x, y)[c] = divisor > 0 ? light / divisor : 0;
       }
     }
@@ -108,8 +110,12 @@ class ImageLightReader {
     std::array<Image, 6> faces;
     bool bounded = true;
     for (size_t i = 0; i < 6; ++i) {
-      faces[i] = to_radiance(*decoded[i].pixels);
-      bounded = bounded && decoded[i].pixels->channels != 4;
+      std::visit(
+          [&](const auto& face) {
+            faces[i] = to_radiance(*face);
+            bounded = bounded && face->channels != 4;
+          },
+          *decoded[i].pixels);
       if (!decoded[i].fingerprint.empty()) fingerprints.push_back(decoded[i].fingerprint);
       for (const auto& remark : decoded[i].remarks)
         notices.push_back(
@@ -132,11 +138,15 @@ class ImageLightReader {
     const std::string place = fmt::format("/images/{}", index);
     if (!image.pixels) document_.fail(place, "the light's image cannot be read: " + image.problem);
     const int size = light_.Get("specularImageSize").GetNumberAsInt();
-    if (image.pixels->width != size || image.pixels->height != size)
-      document_.fail(
-          place, fmt::format("{0} x {0} pixels expected, the specularImageSize of the light that uses it; "
-                             "there are {1} x {2}",
-                             size, image.pixels->width, image.pixels->height));
+    std::visit(
+        [&](const auto& face) {
+          if (face->width != size || face->height != size)
+            document_.fail(
+                place, fmt::format("{0} x {0} pixels expected, the specularImageSize of the light that uses "
+                                   "it; there are {1} x {2}",
+                                   size, face->width, face->height));
+        },
+        *image.pixels);
   }
 
   Imath::Quatf rotation(std::vector<Notice>& notices) const {

@@ -163,7 +163,8 @@ uint32_t InstancePlacer::mesh_of(MeshUse use, Topology topology, uint32_t materi
   const ImportedMaterial& reader = material_at(material);
   request.tangent_map = tangent_map(reader.description);
   const auto want = [&](const TextureUse& texture) {
-    const size_t slot = size_t(texture.texcoord);
+    const auto slot = size_t(texture.texcoord);
+    if (slot >= request.texcoords.size()) request.texcoords.resize(slot + 1, -1);
     request.texcoords[slot] = reader.texcoord_sets[slot];
   };
   if (request.tangent_map) want(*request.tangent_map);

@@ -47,8 +47,7 @@ void separate_corners(MeshDescription& mesh) {
   separate(mesh.positions);
   separate(mesh.normals);
   separate(mesh.tangents);
-  separate(mesh.texcoords[0]);
-  separate(mesh.texcoords[1]);
+  for (size_t set = 0; set < mesh.texcoord_set_count(); ++set) separate(mesh.texcoord_set(set));
   separate(mesh.colors);
   for (uint32_t i = 0; i < mesh.triangles.size(); ++i) mesh.triangles[i] = {3 * i, 3 * i + 1, 3 * i + 2};
 }

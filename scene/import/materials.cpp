@@ -81,19 +81,15 @@ class MaterialReader {
       read_specular_glossiness(old);
     } else {
       read_metallic_roughness();
+      read_diffuse_roughness();
       read_specular();
     }
     read_emission();
     read_volume();
     read_coats();
     read_films();
-    const TexcoordSets sets = assign_texcoord_sets(result_);
-    if (sets.wanted > 2)
-      warn(
-          fmt::format("its textures read {} sets of texture coordinates, of which two can be used; "
-                      "TEXCOORD_{} stands for the others",
-                      sets.wanted, sets.substitute));
-    return {std::move(result_), sets.of_slot};
+    std::vector<int> sets = assign_texcoord_sets(result_);
+    return {std::move(result_), std::move(sets)};
   }
 
  private:
@@ -117,6 +113,12 @@ class MaterialReader {
     result_.roughness = unit(float(pbr.roughnessFactor), "roughnessFactor");
     result_.base_color_texture = use_of(pbr.baseColorTexture);
     result_.metallic_roughness_texture = use_of(pbr.metallicRoughnessTexture);
+  }
+
+  void read_diffuse_roughness() {
+    const Members diffuse = extension("KHR_materials_diffuse_roughness");
+    result_.diffuse_roughness = unit(diffuse.number("diffuseRoughnessFactor", 0), "diffuseRoughnessFactor");
+    result_.diffuse_roughness_texture = texture(diffuse, "diffuseRoughnessTexture");
   }
 
   /// As a dielectric whose Fresnel reflectance is the specular colour: an index of 0 makes it 1, which the

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 
@@ -15,8 +14,8 @@ namespace vernier {
 /// A material as the importer uses it on the way.
 struct ImportedMaterial {
   MaterialDescription description;
-  /// The file's TEXCOORD_n that are sets 0 and 1 of the description.
-  std::array<int, 2> texcoord_sets{0, 1};
+  /// The file's TEXCOORD_n that are the sets of the description.
+  std::vector<int> texcoord_sets{0, 1};
 };
 
 struct ImportedMaterials {
@@ -32,12 +31,13 @@ ImportedMaterials read_materials(const Document& document, std::vector<Notice>& 
 /// Calls visit(TextureUse&) for each texture slot of a material (const or not).
 template <typename Material, typename Visit>
 void for_each_texture(Material& m, const Visit& visit) {
-  for (auto* use : {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
-                    &m.emissive_texture, &m.specular_texture, &m.specular_color_texture,
-                    &m.transmission_texture, &m.clearcoat_texture, &m.clearcoat_roughness_texture,
-                    &m.clearcoat_normal_texture, &m.sheen_color_texture, &m.sheen_roughness_texture,
-                    &m.anisotropy_texture, &m.iridescence_texture, &m.iridescence_thickness_texture,
-                    &m.diffuse_transmission_texture, &m.diffuse_transmission_color_texture})
+  for (auto* use :
+       {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emissive_texture,
+        &m.specular_texture, &m.specular_color_texture, &m.transmission_texture, &m.clearcoat_texture,
+        &m.clearcoat_roughness_texture, &m.clearcoat_normal_texture, &m.sheen_color_texture,
+        &m.sheen_roughness_texture, &m.anisotropy_texture, &m.iridescence_texture,
+        &m.iridescence_thickness_texture, &m.diffuse_transmission_texture,
+        &m.diffuse_transmission_color_texture, &m.diffuse_roughness_texture})
     visit(*use);
 }
 

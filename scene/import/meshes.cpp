@@ -72,10 +72,11 @@ void repair_tangents(MeshDescription& mesh, MeshRepairs& repairs) {
 
 void read_texcoords(const PrimitiveData& data, const MeshRequest& request, MeshDescription& mesh,
                     MeshRepairs& repairs) {
-  for (size_t set = 0; set < mesh.texcoords.size(); ++set) {
+  mesh.more_texcoords.resize(request.texcoords.size() - mesh.texcoords.size());
+  for (size_t set = 0; set < request.texcoords.size(); ++set) {
     if (request.texcoords[set] < 0) continue;
     const std::string attribute = fmt::format("TEXCOORD_{}", request.texcoords[set]);
-    auto& texcoords = mesh.texcoords[set];
+    auto& texcoords = mesh.texcoord_set(set);
     if (!data.has(attribute)) {
       texcoords.assign(mesh.positions.size(), Vec2f(0, 0));
       ++repairs.texcoords_missing;

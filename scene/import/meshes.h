@@ -3,7 +3,6 @@
 
 #include <ImathMatrix.h>
 
-#include <array>
 #include <compare>
 #include <map>
 #include <memory>
@@ -29,7 +28,7 @@ struct MeshUse {
 struct MeshRequest {
   MeshUse use;
   Topology topology = Topology::triangles;
-  std::array<int, 2> texcoords{-1, -1};   ///< n of the TEXCOORD_n to read as sets 0 and 1; -1: none
+  std::vector<int> texcoords{-1, -1};     ///< n of the TEXCOORD_n to read as the sets there; -1: none
   std::optional<TextureUse> tangent_map;  ///< the texture whose axes tangents follow; none: they are not read
 };
 

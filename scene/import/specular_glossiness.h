@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <memory>
-
-#include "vernier/image.h"
+#include "vernier/texture.h"
 
 namespace vernier {
 
@@ -15,8 +13,8 @@ struct RoughnessFromGlossiness {
   bool operator==(const RoughnessFromGlossiness&) const = default;
 };
 
-/// Green is 1 - factor x alpha, as metallic-roughness textures have it; exact but for the rounding to eight
-/// bits, since filtering a texture and taking it from 1 commute.
-std::shared_ptr<const Image8> roughness_of(const Image8& specular_glossiness, float factor);
+/// Green is 1 - factor x alpha, as metallic-roughness textures have it; exact but for the rounding to the
+/// bits of the source, since filtering a texture and taking it from 1 commute.
+TexturePixels roughness_of(const TexturePixels& specular_glossiness, float factor);
 
 }  // namespace vernier

@@ -49,7 +49,7 @@ class TangentBuilder {
  public:
   TangentBuilder(MeshDescription& mesh, const TextureUse& map)
       : mesh_(mesh),
-        uv_(transformed(mesh.texcoords[size_t(map.texcoord)], map)),
+        uv_(transformed(mesh.texcoord_set(size_t(map.texcoord)), map)),
         info_(mesh.triangles.size()) {}
 
   void build() {

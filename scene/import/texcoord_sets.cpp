@@ -2,31 +2,30 @@
 #include "scene/import/texcoord_sets.h"
 
 #include <algorithm>
-#include <vector>
+#include <array>
 
 #include "scene/import/materials.h"
 
 namespace vernier {
 
-TexcoordSets assign_texcoord_sets(MaterialDescription& material) {
-  // Texture slots are visited by how much they matter, so what is beyond two sets matters least.
-  std::vector<int> seen;
+std::vector<int> assign_texcoord_sets(MaterialDescription& material) {
+  std::vector<int> sets{0, 1};
+  std::array<bool, 2> is_taken{false, false};
   for_each_texture(material, [&](const TextureUse& use) {
-    if (use && std::find(seen.begin(), seen.end(), use.texcoord) == seen.end()) seen.push_back(use.texcoord);
+    if (use && use.texcoord < 2) is_taken[size_t(use.texcoord)] = true;
   });
-  TexcoordSets sets;
-  sets.wanted = seen.size();
-  if (seen.empty()) return sets;
-  sets.substitute = seen[0];
-  const auto end_of_kept = seen.begin() + ptrdiff_t(std::min<size_t>(seen.size(), 2));
-  const std::vector<int> kept(seen.begin(), end_of_kept);
-  const auto is_kept = [&](int set) { return std::find(kept.begin(), kept.end(), set) != kept.end(); };
-  for (const int set : kept)
-    if (set > 1) sets.of_slot[is_kept(sets.of_slot[0]) ? 1 : 0] = set;
+  for_each_texture(material, [&](const TextureUse& use) {
+    if (!use || use.texcoord < 2 || std::find(sets.begin(), sets.end(), use.texcoord) != sets.end()) return;
+    const auto free = std::find(is_taken.begin(), is_taken.end(), false);
+    if (free == is_taken.end()) {
+      sets.push_back(use.texcoord);
+      return;
+    }
+    sets[size_t(free - is_taken.begin())] = use.texcoord;
+    *free = true;
+  });
   for_each_texture(material, [&](TextureUse& use) {
-    if (!use) return;
-    if (!is_kept(use.texcoord)) use.texcoord = sets.substitute;
-    use.texcoord = use.texcoord == sets.of_slot[1] ? 1 : 0;
+    if (use) use.texcoord = int(std::find(sets.begin(), sets.end(), use.texcoord) - sets.begin());
   });
   return sets;
 }

@@ -28,7 +28,7 @@ struct Candidate {
 /// The best first.
 std::vector<Candidate> candidates_of(const tinygltf::Texture& texture) {
   std::vector<Candidate> candidates;
-  for (const char* name : {"EXT_texture_webp", Candidate::basisu}) {
+  for (const char* name : {"EXT_texture_avif", "EXT_texture_webp", Candidate::basisu}) {
     const auto extension = texture.extensions.find(name);
     if (extension != texture.extensions.end())
       candidates.push_back({extension->second.Get("source").GetNumberAsInt(), name});
@@ -64,7 +64,7 @@ std::set<int> decode_images(const Document& document, const std::vector<int>& te
   candidates.reserve(textures.size());
   for (const int texture : textures)
     candidates.push_back(candidates_of(document.model().textures[size_t(texture)]));
-  for (size_t rank = 0; rank < 3; ++rank) {
+  for (size_t rank = 0; rank < 4; ++rank) {
     std::vector<int> wanted;
     for (const auto& list : candidates)
       if (rank < list.size() && (rank == 0 || !problem_of(list[rank - 1], images).empty()))
@@ -80,8 +80,7 @@ WrapMode wrap_mode(int gltf) {
   return gltf == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? WrapMode::mirrored_repeat : WrapMode::repeat;
 }
 
-Texture make_texture(const Document& document, const tinygltf::Texture& source,
-                     std::shared_ptr<const Image8> pixels) {
+Texture make_texture(const Document& document, const tinygltf::Texture& source, TexturePixels pixels) {
   if (source.sampler < 0) return {std::move(pixels), WrapMode::repeat, WrapMode::repeat, FilterMode::linear};
   const auto& sampler = document.model().samplers[size_t(source.sampler)];
   // Magnification decides: minification is what the many samples of a pixel do.
@@ -113,8 +112,8 @@ Choice choose(const std::map<int, DecodedImage>& images, const std::vector<Candi
   return choice;
 }
 
-std::shared_ptr<const Image8> magenta_texel() {
-  auto image = std::make_shared<Image8>(1, 1, 3);
+TexturePixels magenta_texel() {
+  const auto image = std::make_shared<Image8>(1, 1, 3);
   image->values = {255, 0, 255};
   return image;
 }
@@ -133,7 +132,7 @@ Image8 to_image(const ktx2::Texture& texture) {
 void decode_ktx2(std::span<const uint8_t> bytes, const std::string& name, DecodedImage& image) {
   try {
     ktx2::Texture texture = ktx2::decode(bytes);
-    image.pixels = std::make_shared<Image8>(to_image(texture));
+    image.pixels = std::make_shared<const Image8>(to_image(texture));
     image.remarks.insert(image.remarks.end(), texture.remarks.begin(), texture.remarks.end());
     image.transfer = texture.transfer;
     if (!texture.is_basis_universal)
@@ -187,8 +186,12 @@ DecodedImage decode_image(const Document& document, int index) {
     return image;
   }
   try {
-    PartialImage8 decoded = decode_partial_image8(bytes, name);
-    image.pixels = std::make_shared<Image8>(std::move(decoded.image));
+    PartialImage decoded = decode_partial_image(bytes, name);
+    image.pixels = std::visit(
+        []<typename T>(BasicImage<T>& pixels) {
+          return TexturePixels(std::make_shared<const BasicImage<T>>(std::move(pixels)));
+        },
+        decoded.image);
     if (!decoded.damage.empty()) image.remarks.push_back(decoded.damage);
   } catch (const Error& e) {
     if (e.kind() == ErrorKind::memory) throw;
@@ -243,11 +246,11 @@ DecodedTextures read_textures(const Document& document, const std::vector<Wanted
     const Choice choice = choose(cache.images, candidates_of(textures[size_t(source)]));
     if (reported.insert(source).second) report(document, source, choice, notices);
     result.unreadable.push_back(!choice.image);
-    std::shared_ptr<const Image8> pixels = choice.image ? choice.image->pixels : magenta_texel();
+    TexturePixels pixels = choice.image ? *choice.image->pixels : magenta_texel();
     if (choice.image && texture.index >= from_file) {
-      std::shared_ptr<const Image8>& roughness = cache.roughness[texture.index];
-      if (!roughness) roughness = roughness_of(*pixels, derived[size_t(texture.index - from_file)].factor);
-      pixels = roughness;
+      const auto [roughness, is_new] = cache.roughness.try_emplace(texture.index);
+      if (is_new) roughness->second = roughness_of(pixels, derived[size_t(texture.index - from_file)].factor);
+      pixels = roughness->second;
     } else if (choice.image) {
       if (const std::string problem = transfer_problem(texture, *choice.image); !problem.empty())
         notices.push_back({Notice::Severity::warning, fmt::format("/textures/{}", source),

@@ -14,7 +14,7 @@ namespace vernier {
 
 /// An image of a file, decoded.
 struct DecodedImage {
-  std::shared_ptr<const Image8> pixels;            ///< null: missing or cannot be decoded
+  std::optional<TexturePixels> pixels;             ///< empty: missing or cannot be decoded
   std::string problem;                             ///< why there are no pixels
   std::vector<std::string> remarks;                ///< what a user should know about those there are
   std::string fingerprint;                         ///< empty: in a buffer or not read
@@ -40,8 +40,8 @@ struct DecodedTextures {
 
 /// Pictures of a file that have been decoded, for descriptions of it to come.
 struct ImageCache {
-  std::map<int, DecodedImage> images;                      ///< by the file's index
-  std::map<int, std::shared_ptr<const Image8>> roughness;  ///< by that of `derived`
+  std::map<int, DecodedImage> images;      ///< by the file's index
+  std::map<int, TexturePixels> roughness;  ///< by that of `derived`
 };
 
 /// Reads and decodes the textures asked for, in parallel; textures of one image share its pixels. They are

@@ -19,7 +19,7 @@ void gather_vertices(MeshDescription& mesh, const std::vector<uint32_t>& sources
   gather(mesh.positions, sources);
   gather(mesh.normals, sources);
   gather(mesh.tangents, sources);
-  for (auto& set : mesh.texcoords) gather(set, sources);
+  for (size_t set = 0; set < mesh.texcoord_set_count(); ++set) gather(mesh.texcoord_set(set), sources);
   gather(mesh.colors, sources);
 }
 

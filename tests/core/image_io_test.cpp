@@ -36,6 +36,11 @@ std::string error_of(ErrorKind kind, const Action& action) {
   return {};
 }
 
+Image8 decode_image8(std::span<const uint8_t> bytes, const std::string& name,
+                     const ImageLimits& limits = {}) {
+  return std::get<Image8>(decode_whole_image(bytes, name, limits));
+}
+
 std::string decode_error(std::span<const uint8_t> bytes) {
   return error_of(ErrorKind::input, [&] { decode_image8(bytes, "tex.png"); });
 }
@@ -238,11 +243,33 @@ TEST(ImageIo, JpegRoundTripIsCloseAndKeepsMetadata) {
   for (size_t i = 0; i < image.values.size(); ++i) EXPECT_NEAR(back.values[i], image.values[i], 8) << i;
 }
 
-TEST(ImageIo, SixteenBitPngIsRoundedToEight) {
-  const auto bytes = png_bytes(
-      {.width = 3, .bit_depth = 16, .colour_type = 0, .samples = {0xff, 0xff, 0x80, 0x80, 0x01, 0x7f}});
-  // 65535 -> 255, 0x8080 = 128 * 257 -> 128, 0x017f / 257 = 1.49 -> 1
-  EXPECT_EQ(decode_image8(bytes, "t").values, (std::vector<uint8_t>{255, 128, 1}));
+TEST(ImageIo, SixteenBitsAreKeptWhereTheyAreMoreThanEight) {
+  const auto decoded = [](std::vector<uint8_t> samples) {
+    return decode_whole_image(
+        png_bytes({.width = 3, .bit_depth = 16, .colour_type = 0, .samples = std::move(samples)}), "t");
+  };
+  EXPECT_EQ(std::get<Image16>(decoded({0xff, 0xff, 0x80, 0x80, 0x01, 0x7f})).values,
+            (std::vector<uint16_t>{0xffff, 0x8080, 0x017f}));
+  // Multiples of 257 are eight-bit codes.
+  EXPECT_EQ(std::get<Image8>(decoded({0xff, 0xff, 0x80, 0x80, 0x01, 0x01})).values,
+            (std::vector<uint8_t>{255, 128, 1}));
+}
+
+TEST(ImageIo, SixteenBitAlphaStaysUnassociated) {
+  const std::vector<uint8_t> samples{0x12, 0x34, 0xff, 0xff, 0, 1, 0, 2, 0x80, 0, 0x40, 0, 0x20, 0, 0, 0};
+  const auto image = std::get<Image16>(decode_whole_image(
+      png_bytes({.width = 2, .bit_depth = 16, .colour_type = 6, .samples = samples}), "t"));
+  EXPECT_EQ(image.values, (std::vector<uint16_t>{0x1234, 0xffff, 1, 2, 0x8000, 0x4000, 0x2000, 0}));
+}
+
+TEST(ImageIo, ACutOffPngKeepsItsSixteenBits) {
+  std::vector<uint8_t> samples;
+  for (int i = 0; i < 2 * 3 * 64 * 64; ++i) samples.push_back(uint8_t(7 * i * i + 13 * i));
+  const auto bytes = png_bytes({.width = 64, .height = 64, .bit_depth = 16, .samples = samples});
+  const PartialImage partial = decode_partial_image({bytes.data(), bytes.size() * 7 / 10}, "t");
+  EXPECT_NE(partial.damage, "");
+  const auto& image = std::get<Image16>(partial.image);
+  for (size_t i = 0; i < 3 * 64; ++i) EXPECT_EQ(image.values[i], samples[2 * i] << 8 | samples[2 * i + 1]);
 }
 
 TEST(ImageIo, AlphaStaysUnassociated) {
@@ -400,7 +427,7 @@ TEST(ImageIo, WrongKindsOfFileAreNamed) {
   EXPECT_THAT(decode_error({}), HasSubstr("no bytes"));
   const std::string text = "hello there, this is a text";
   EXPECT_THAT(decode_error({reinterpret_cast<const uint8_t*>(text.data()), text.size()}),
-              HasSubstr("tex.png: not a PNG, JPEG or WebP"));
+              HasSubstr("tex.png: not a PNG, JPEG, WebP or AVIF"));
   EXPECT_THAT(error_of(ErrorKind::input, [&] { read_image(folder.file("none.exr")); }),
               HasSubstr("none.exr: cannot be read: No such file"));
   EXPECT_THAT(error_of(ErrorKind::input, [&] { read_image(folder.path().string()); }),

@@ -115,7 +115,7 @@ void add_mixtures(CaseList& list) {
           const Dielectric glass = thin ? Dielectric{index, ggx(r), white, fresnel(index), true}
                                         : thick(index, ggx(r), white, white);
           const Glossy glossy = Glossy::mix(plastic(white, f0, 1, ggx(r)), conductor(white, ggx(r)), 0.5f);
-          return Mixture{glossy, glass, 0.25f};
+          return Mixture{glossy, 0.25f, glass};
         };
         BsdfCase& added =
             list.add(fmt::format("{}mixture, index {:.3f}, roughness {}", thin ? "thin " : "", eta, r),
@@ -138,14 +138,33 @@ void add_bodies(CaseList& list) {
            Glossy::coated_diffuse({blue, 1, {}}, ggx(0.3f), {white, gold * 0.f, 1}), ggx(0.3f));
   // Diffuse transmission beside clear glass: light is n^2 times as dense inside.
   const auto make = [&](float eta) {
-    return Mixture{Glossy::coated_diffuse({f0, 1, {}}, ggx(0.3f), {white * 0.5f, white * 0.5f, eta}),
-                   thick(eta, ggx(0.3f), white, white), 0.4f};
+    return Mixture{Glossy::coated_diffuse({f0, 1, {}}, ggx(0.3f), {white * 0.5f, white * 0.5f, eta}), 0.4f,
+                   thick(eta, ggx(0.3f), white, white)};
   };
   for (const float eta : {1.5f, 1 / 1.5f}) {
     BsdfCase& wax = list.add(fmt::format("wax, index {:.3f}", eta), make(eta), make(1 / eta), ggx(0.3f));
     wax.eta = eta;
     wax.transmits = wax.lossless = true;
     wax.reciprocal = false;
+  }
+}
+
+/// Matte, under a clear layer, in part metal, and passed by light.
+void add_rough_bodies(CaseList& list) {
+  const Rgb f0(0.04f, 0.04f, 0.04f);
+  for (const float r : {1e-6f, 0.2f, 1.f}) {
+    list.add(fmt::format("white, rough by {}", r), RoughDiffuse{white, Eon(r)}, ggx(1)).lossless = true;
+    list.add(fmt::format("gold, rough by {}", r), RoughDiffuse{gold, Eon(r)}, ggx(1));
+    const auto under = [&](const Ggx& widths, const Rgb& reflected, const Rgb& transmitted) {
+      return Glossy::coated_diffuse({f0, 1, {}}, widths, {reflected, transmitted, 1, r});
+    };
+    for (const float layer : {0.f, 0.3f})
+      list.add(fmt::format("plastic of roughness {} on white, rough by {}", layer, r),
+               under(ggx(layer), white, {0, 0, 0}), ggx(layer));
+    list.add(fmt::format("half metal, rough by {}", r),
+             Glossy::mix(under(ggx(0.3f), blue, {0, 0, 0}), conductor(blue, ggx(0.3f)), 0.5f), ggx(0.3f));
+    list.add(fmt::format("leaf, rough by {}", r), under(ggx(0.3f), white * 0.3f, white * 0.7f), ggx(0.3f))
+        .transmits = true;
   }
 }
 
@@ -225,14 +244,14 @@ void add_partly_matched_dispersion(CaseList& list) {
 
 void add_layers(CaseList& list) {
   const Rgb f0(0.04f, 0.04f, 0.04f);
-  const auto base = [&](float r, const Rgb& color) { return Mixture{plastic(color, f0, 1, ggx(r)), {}, 0}; };
+  const auto base = [&](float r, const Rgb& color) { return Mixture{plastic(color, f0, 1, ggx(r)), 0, {}}; };
   for (const float coat : {0.f, 0.3f}) {
     BsdfCase& varnished = list.add(fmt::format("coat of roughness {} on white plastic", coat),
                                    Layered(base(0.3f, white), {}, {1, coat * coat}), ggx(0.3f));
     varnished.lossless = true;
     varnished.reciprocal = false;
   }
-  const Mixture metal{conductor(gold, ggx(0.3f)), {}, 0};
+  const Mixture metal{conductor(gold, ggx(0.3f)), 0, {}};
   list.add("tilted coat on gold", Layered(metal, {}, {0.6f, 0.09f, normalize(Vec3f(0.3f, -0.4f, 1))}),
            ggx(0.3f))
       .reciprocal = false;
@@ -242,13 +261,13 @@ void add_layers(CaseList& list) {
   const Dielectric thin{1.5f, ggx(0.3f), white, fresnel(1.5f), true};
   BsdfCase& window =
       list.add("coat and sheen on thin glass",
-               Layered({plastic(white, f0, 1, ggx(0.3f)), thin, 0.6f}, {gold, 0.5f}, {1, 0.01f}), ggx(0.1f));
+               Layered({plastic(white, f0, 1, ggx(0.3f)), 0.6f, thin}, {gold, 0.5f}, {1, 0.01f}), ggx(0.1f));
   window.transmits = true;
   window.reciprocal = false;
   const Dielectric clear{1.5f, ggx(0), white, fresnel(1.5f), true};
   BsdfCase& pane =
       list.add("coat and sheen on clear thin glass",
-               Layered({plastic(white, f0, 1, ggx(0.3f)), clear, 0.6f}, {gold, 0.5f}, {1, 0.01f}), ggx(0.1f));
+               Layered({plastic(white, f0, 1, ggx(0.3f)), 0.6f, clear}, {gold, 0.5f}, {1, 0.01f}), ggx(0.1f));
   pane.transmits = true;
   pane.reciprocal = false;
 }
@@ -273,6 +292,7 @@ std::vector<BsdfCase> bsdf_cases() {
   add_dielectrics(list);
   add_mixtures(list);
   add_bodies(list);
+  add_rough_bodies(list);
   add_films(list);
   add_dispersion(list);
   add_partly_matched_dispersion(list);

@@ -50,6 +50,8 @@ TEST(Material, IsTheLeastModel) {
   EXPECT_TRUE(is<Glossy>([](auto&) {}));
   EXPECT_TRUE(is<Lambert>([](auto& m) { m.specular = 0; }));
   EXPECT_TRUE(is<Lambert>([](auto& m) { m.unlit = true; }));
+  EXPECT_TRUE(is<RoughDiffuse>([](auto& m) { m.specular = 0, m.diffuse_roughness = 0.1f; }));
+  EXPECT_TRUE(is<Glossy>([](auto& m) { m.diffuse_roughness = 0.1f; }));
   EXPECT_TRUE(is<Glossy>([](auto& m) { m.metallic = 1; }));
   EXPECT_TRUE(is<Glossy>([](auto& m) { m.metallic = 0.5f; }));
   EXPECT_TRUE(is<Glossy>([](auto& m) { m.metallic = 1, m.transmission = 1; }));
@@ -112,6 +114,8 @@ TEST(Material, TexturesMultiplyFactors) {
        [&](M& m) { m.base_color *= Vec4f(color.x, color.y, color.z, 1); }},
       {"metallic roughness", &M::metallic_roughness_texture, [](M& m) { m.metallic = m.roughness = 1; },
        [](M& m) { m.roughness = 0.4f, m.metallic = 0.6f; }},
+      {"diffuse roughness", &M::diffuse_roughness_texture, [](M& m) { m.diffuse_roughness = 1; },
+       [](M& m) { m.diffuse_roughness = 0.2f; }},
       {"specular", &M::specular_texture, [](M&) {}, [](M& m) { m.specular = 0.8f; }},
       {"specular colour", &M::specular_color_texture, [](M&) {}, [&](M& m) { m.specular_color = color; }},
       {"transmission", &M::transmission_texture, [](M& m) { m.transmission = 1; },

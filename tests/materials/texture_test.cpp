@@ -69,6 +69,42 @@ TEST(Texture, DecodesBeforeFilteringButNotAlpha) {
   }
 }
 
+TEST(Texture, DecodesSixteenBits) {
+  const auto read = [](int channels, std::vector<uint16_t> codes, TexelEncoding encoding) {
+    auto picture = std::make_shared<Image16>(1, 1, channels);
+    picture->values = std::move(codes);
+    return Texture(std::shared_ptr<const Image16>(picture), WrapMode::repeat, WrapMode::repeat,
+                   FilterMode::linear)
+        .sample({0.5f, 0.5f}, encoding);
+  };
+  const auto value = [](int code) { return float(code) / 65535; };
+  const auto light = [&](int code) { return srgb_to_linear(value(code)); };
+  constexpr auto linear = TexelEncoding::linear, srgb = TexelEncoding::srgb;
+  expect_near(read(1, {300}, linear), Vec4f(value(300), value(300), value(300), 1));
+  expect_near(read(2, {300, 65535}, srgb), Vec4f(light(300), light(300), light(300), 1));
+  expect_near(read(3, {1, 2000, 65535}, srgb), Vec4f(light(1), light(2000), 1, 1), 1e-9f);
+  expect_near(read(4, {1, 2, 3, 4}, linear), Vec4f(value(1), value(2), value(3), value(4)), 1e-9f);
+  expect_near(read(4, {900, 40000, 3, 500}, srgb), Vec4f(light(900), light(40000), light(3), value(500)));
+}
+
+/// A gradient over one step of eight bits: they would show it as one or two bands.
+TEST(Texture, ShowsGradientsFinerThanEightBits) {
+  auto picture = std::make_shared<Image16>(256, 1, 1);
+  for (size_t x = 0; x < 256; ++x) picture->values[x] = uint16_t(0x4000 + x);
+  const Texture texture(std::shared_ptr<const Image16>(picture), WrapMode::clamp_to_edge,
+                        WrapMode::clamp_to_edge, FilterMode::linear);
+  for (const TexelEncoding encoding : {TexelEncoding::linear, TexelEncoding::srgb}) {
+    float last = 0;
+    for (int i = 0; i < 1000; ++i) {
+      const float u = (0.5f + 255 * float(i) / 1000) / 256;
+      const float value = texture.sample({u, 0.5f}, encoding).x, ideal = (0x4000 + 256 * u - 0.5f) / 65535;
+      EXPECT_GT(value, last);
+      EXPECT_NEAR(value, encoding == TexelEncoding::srgb ? srgb_to_linear(ideal) : ideal, 1e-7);
+      last = value;
+    }
+  }
+}
+
 /// Values along one row of three texels, 0, 100 and 200, at texel positions.
 float row(WrapMode wrap, FilterMode filter, float position) {
   return texture(image(3, 1, 1, {0, 100, 200}), wrap, filter)

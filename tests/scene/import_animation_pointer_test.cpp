@@ -87,6 +87,7 @@ TEST(AnimationPointer, SetsWhatExtensionsOfMaterialsHave) {
       {"anisotropy", "anisotropyRotation", &MaterialDescription::anisotropy_rotation},
       {"clearcoat", "clearcoatFactor", &MaterialDescription::clearcoat},
       {"clearcoat", "clearcoatRoughnessFactor", &MaterialDescription::clearcoat_roughness},
+      {"diffuse_roughness", "diffuseRoughnessFactor", &MaterialDescription::diffuse_roughness},
       {"diffuse_transmission", "diffuseTransmissionFactor", &MaterialDescription::diffuse_transmission},
       {"dispersion", "dispersion", &MaterialDescription::dispersion},
       {"iridescence", "iridescenceFactor", &MaterialDescription::iridescence},

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include "scene/geometry.h"
 #include "tests/scene/import_support.h"
+#include "tests/support/png_bytes.h"
 
 // Sets of texture coordinates, morphed attributes, and instances by attributes that nobody knows.
 
@@ -30,7 +32,9 @@ json use(int texcoord) { return {{"index", 0}, {"texCoord", texcoord}}; }
 
 /// The value of the texture coordinates that a slot reads; 0: none.
 float read_by(const SceneDescription& scene, const TextureUse& slot) {
-  const auto& set = scene.meshes.at(0).texcoords.at(size_t(slot.texcoord));
+  const MeshDescription& mesh = scene.meshes.at(0);
+  if (size_t(slot.texcoord) >= mesh.texcoord_set_count()) return -1;
+  const auto& set = mesh.texcoord_set(size_t(slot.texcoord));
   return set.empty() ? 0 : set[0].x;
 }
 
@@ -45,7 +49,7 @@ TEST(ImportAttributes, AnyTwoSetsOfTextureCoordinatesAreRead) {
     const SceneDescription scene = file.import();
     const MaterialDescription& m = scene.materials.at(0);
     EXPECT_EQ(read_by(scene, m.base_color_texture), float(base + 1)) << base << " " << normal;
-    EXPECT_FALSE(has_notice(scene, "sets of texture coordinates"));
+    EXPECT_TRUE(scene.meshes.at(0).more_texcoords.empty()) << "the two sets that cost least are enough";
   }
 }
 
@@ -57,16 +61,60 @@ TEST(ImportAttributes, SetsOfTransformsCountToo) {
   EXPECT_EQ(read_by(scene, scene.materials.at(0).base_color_texture), 5.f);
 }
 
-TEST(ImportAttributes, OfThreeSetsTheLeastImportantIsReplaced) {
-  const SceneDescription scene =
-      with_sets({2, 3, 4}, {{"pbrMetallicRoughness", {{"baseColorTexture", use(3)}}},
-                            {"normalTexture", use(2)},
-                            {"emissiveFactor", {1, 1, 1}},
-                            {"emissiveTexture", use(4)}})
-          .import();
-  EXPECT_EQ(read_by(scene, scene.materials.at(0).base_color_texture), 4.f);
-  EXPECT_TRUE(has_notice(
-      scene, "its textures read 3 sets of texture coordinates, of which two can be used; TEXCOORD_3"));
+TEST(ImportAttributes, AnyNumberOfSetsIsRead) {
+  const json extensions = {
+      {"KHR_materials_sheen",
+       {{"sheenColorFactor", {1, 1, 1}}, {"sheenColorTexture", use(1)}, {"sheenRoughnessTexture", use(6)}}},
+      {"KHR_materials_specular", {{"specularTexture", use(11)}}}};
+  GltfFile file = with_sets({1, 2, 3, 4, 6, 11}, {{"pbrMetallicRoughness", {{"baseColorTexture", use(3)}}},
+                                                  {"normalTexture", use(2)},
+                                                  {"emissiveFactor", {1, 1, 1}},
+                                                  {"emissiveTexture", use(4)},
+                                                  {"extensions", extensions}});
+  // Slots whose image is missing are left out.
+  file.json["images"][0] = {{"bufferView", file.add_view(png_bytes({.samples = {1, 2, 3}}))},
+                            {"mimeType", "image/png"}};
+  const SceneDescription scene = file.import();
+  const MaterialDescription& m = scene.materials.at(0);
+  EXPECT_EQ(read_by(scene, m.base_color_texture), 4.f);
+  EXPECT_EQ(read_by(scene, m.emissive_texture), 5.f);
+  EXPECT_EQ(read_by(scene, m.sheen_color_texture), 2.f);
+  EXPECT_EQ(read_by(scene, m.sheen_roughness_texture), 7.f);
+  EXPECT_EQ(read_by(scene, m.specular_texture), 12.f);
+  EXPECT_EQ(scene.meshes.at(0).texcoord_set_count(), 6u);
+  EXPECT_TRUE(scene.notices.empty() || !has_notice(scene, "texture coordinates"));
+}
+
+/// What a texture shows of a set beyond the second is what it would show of the first.
+TEST(ImportAttributes, FurtherSetsAreInterpolated) {
+  GltfFile file;
+  const std::vector<float> corner_uv{0.1f, 0.2f, 0.9f, 0.3f, 0.4f, 0.8f};
+  json attributes = {{"POSITION", file.add_accessor(GltfFile::triangle_positions(), "VEC3")}};
+  for (const char* name : {"TEXCOORD_0", "TEXCOORD_1"})
+    attributes[name] = file.add_accessor(std::vector<float>(6, 0.5f), "VEC2");
+  attributes["TEXCOORD_2"] = file.add_accessor(corner_uv, "VEC2");
+  file.add("images",
+           {{"bufferView", file.add_view(png_bytes({.width = 2, .samples = {0, 50, 99, 200, 7, 80}}))},
+            {"mimeType", "image/png"}});
+  file.add("textures", {{"source", 0}});
+  file.add("materials",
+           {{"pbrMetallicRoughness", {{"baseColorTexture", use(0)}, {"metallicRoughnessTexture", use(1)}}},
+            {"emissiveFactor", {1, 1, 1}},
+            {"emissiveTexture", use(2)}});
+  file.add_mesh(attributes, {{"material", 0}});
+  const SceneDescription scene = file.import();
+  const Material material(scene.materials.at(0), scene.textures, false);
+  const SceneGeometry geometry(scene.meshes, scene.instances);
+  for (const Vec2f& at : {Vec2f(0, 0), Vec2f(0.2f, 0.3f), Vec2f(0.6f, 0.4f)}) {
+    const auto on = [&](int axis) {
+      return corner_uv[size_t(axis)] * (1 - at.x - at.y) + corner_uv[size_t(2 + axis)] * at.x +
+             corner_uv[size_t(4 + axis)] * at.y;
+    };
+    const Vec4f expected = scene.textures.at(size_t(scene.materials[0].emissive_texture.texture))
+                               .sample({on(0), on(1)}, TexelEncoding::srgb);
+    const Rgb emitted = material.emission(geometry.attributes(geometry.surface_point(0, 0, at)), true, 1);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(emitted[c], expected[c], 1e-6f);
+  }
 }
 
 TEST(ImportAttributes, MissingSetsAreSaid) {

@@ -154,6 +154,7 @@ TEST(ImportMaterials, ReadsExtensions) {
       {"KHR_materials_iridescence",
        {{"iridescenceFactor", .2}, {"iridescenceIor", 1.8}, {"iridescenceThicknessMaximum", 550}}},
       {"KHR_materials_dispersion", {{"dispersion", .36}}},
+      {"KHR_materials_diffuse_roughness", {{"diffuseRoughnessFactor", .65}}},
       {"KHR_materials_diffuse_transmission",
        {{"diffuseTransmissionFactor", .25}, {"diffuseTransmissionColorFactor", {1, .5, 0}}}}};
   const MaterialDescription m = with_material({{"extensions", extensions}}).import().materials.at(0);
@@ -176,6 +177,7 @@ TEST(ImportMaterials, ReadsExtensions) {
   EXPECT_EQ(m.iridescence_thickness_min, 100.f);
   EXPECT_EQ(m.iridescence_thickness_max, 550.f);
   EXPECT_EQ(m.dispersion, .36f);
+  EXPECT_EQ(m.diffuse_roughness, .65f);
   EXPECT_EQ(m.diffuse_transmission, .25f);
   EXPECT_EQ(m.diffuse_transmission_color, Rgb(1, .5f, 0));
 }
@@ -262,6 +264,16 @@ TEST(ImportMaterials, ReadsImagesFromBuffersAndHashesFiles) {
   const std::string path = file.save(folder), hash = import_scene(path).hash;
   folder.write("a.png", png({9, 8, 6}));
   EXPECT_NE(import_scene(path).hash, hash);
+}
+
+TEST(ImportMaterials, KeepsSixteenBits) {
+  GltfFile file = with_material({{"normalTexture", {{"index", 0}}}});
+  const auto bytes =
+      png_bytes({.width = 1, .bit_depth = 16, .samples = {0x80, 0x01, 0x7f, 0xfe, 0xff, 0xff}});
+  file.add("images", {{"bufferView", file.add_view(bytes)}, {"mimeType", "image/png"}});
+  file.add("textures", {{"source", 0}});
+  const SceneDescription scene = file.import();
+  EXPECT_EQ(scene.textures.at(0).image<uint16_t>().values, (std::vector<uint16_t>{0x8001, 0x7ffe, 0xffff}));
 }
 
 TEST(ImportMaterials, RefusesAnImageOfNoPlace) {

@@ -36,6 +36,7 @@ _EXTENSIONS = {
     "iridescence": ("KHR_materials_iridescence", "iridescenceFactor"),
     "iridescence_ior": ("KHR_materials_iridescence", "iridescenceIor"),
     "dispersion": ("KHR_materials_dispersion", "dispersion"),
+    "diffuse_roughness": ("KHR_materials_diffuse_roughness", "diffuseRoughnessFactor"),
     "diffuse_transmission": ("KHR_materials_diffuse_transmission", "diffuseTransmissionFactor"),
     "diffuse_transmission_color": ("KHR_materials_diffuse_transmission", "diffuseTransmissionColorFactor"),
 }

@@ -55,6 +55,7 @@ class Material:
     iridescence_ior: float | None = None
     dispersion: float | None = None
     """20 over the Abbe number."""
+    diffuse_roughness: float | None = None
     diffuse_transmission: float | None = None
     diffuse_transmission_color: Sequence[float] | None = None
     unlit: bool = False
