@@ -263,8 +263,8 @@ TEST(ImageIo, SixteenBitAlphaStaysUnassociated) {
 }
 
 TEST(ImageIo, ACutOffPngKeepsItsSixteenBits) {
-  std::vector<uint8_t> samples;
-  for (int i = 0; i < 2 * 3 * 64 * 64; ++i) samples.push_back(uint8_t(7 * i * i + 13 * i));
+  std::vector<uint8_t> samples(2 * 3 * 64 * 64);
+  for (size_t i = 0; i < samples.size(); ++i) samples[i] = uint8_t(7 * i * i + 13 * i);
   const auto bytes = png_bytes({.width = 64, .height = 64, .bit_depth = 16, .samples = samples});
   const PartialImage partial = decode_partial_image({bytes.data(), bytes.size() * 7 / 10}, "t");
   EXPECT_NE(partial.damage, "");
