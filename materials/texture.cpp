@@ -63,15 +63,15 @@ float wrapped(float coordinate, WrapMode mode) {
 }
 
 /// Two neighbouring texels along one axis and the weight of the second.
-struct Neighbours {
+struct Neighbors {
   int first, second;
   float weight;
 };
 
-Neighbours neighbors(float coordinate, int size, WrapMode mode) {
+Neighbors neighbors(float coordinate, int size, WrapMode mode) {
   const float position = wrapped(coordinate, mode) * float(size) - 0.5f;
   const float first = std::floor(position);
-  Neighbours n{int(first), int(first) + 1, position - first};
+  Neighbors n{int(first), int(first) + 1, position - first};
   // Past an edge a mirrored texture shows the edge texel again, as a clamped one does.
   const bool repeats = mode == WrapMode::repeat;
   if (n.first < 0) n.first = repeats ? size - 1 : 0;
@@ -86,8 +86,8 @@ int nearest(float coordinate, int size, WrapMode mode) {
 template <int channels, typename T, typename Codes>
 Vec4f decoded(const T* texel, const Codes& codes) {
   if constexpr (channels <= 2) {
-    const float grey = codes.color(texel[0]);
-    return {grey, grey, grey, channels == 2 ? Codes::number(texel[channels - 1]) : 1.f};
+    const float gray = codes.color(texel[0]);
+    return {gray, gray, gray, channels == 2 ? Codes::number(texel[channels - 1]) : 1.f};
   } else {
     return {codes.color(texel[0]), codes.color(texel[1]), codes.color(texel[2]),
             channels == 4 ? Codes::number(texel[channels - 1]) : 1.f};
@@ -95,7 +95,7 @@ Vec4f decoded(const T* texel, const Codes& codes) {
 }
 
 template <int channels, typename T, typename Codes>
-Vec4f bilinear(const BasicImage<T>& image, const Neighbours& x, const Neighbours& y, const Codes& codes) {
+Vec4f bilinear(const BasicImage<T>& image, const Neighbors& x, const Neighbors& y, const Codes& codes) {
   const size_t row = size_t(image.width) * channels;
   const T* upper = image.values.data() + size_t(y.first) * row;
   const T* lower = image.values.data() + size_t(y.second) * row;
@@ -108,7 +108,7 @@ Vec4f bilinear(const BasicImage<T>& image, const Neighbours& x, const Neighbours
 }
 
 template <typename T, typename Codes>
-Vec4f interpolated(const BasicImage<T>& image, const Neighbours& x, const Neighbours& y, const Codes& codes) {
+Vec4f interpolated(const BasicImage<T>& image, const Neighbors& x, const Neighbors& y, const Codes& codes) {
   switch (image.channels) {
     case 1:
       return bilinear<1>(image, x, y, codes);
@@ -125,7 +125,7 @@ Vec4f interpolated(const BasicImage<T>& image, const Neighbours& x, const Neighb
 
 Vec4f Texture::sample(const Vec2f& uv, TexelEncoding encoding) const {
   return with_image([&]<typename T>(const BasicImage<T>& image) {
-    Neighbours x, y;
+    Neighbors x, y;
     if (filter_ == FilterMode::nearest) {
       x.first = x.second = nearest(uv.x, image.width, wrap_s_);
       y.first = y.second = nearest(uv.y, image.height, wrap_t_);

@@ -36,9 +36,9 @@ Image layer_as_color(const LayeredImage& picture, const std::string& name, const
     throw Error(ErrorKind::usage, path, "--layer",
                 fmt::format("has no layer '{}'; there are the channels {}", name,
                             fmt::join(picture.channel_names, ", ")));
-  Image grey(single->width, single->height, 3);
-  for (size_t i = 0; i < grey.values.size(); ++i) grey.values[i] = single->values[i / 3];
-  return grey;
+  Image gray(single->width, single->height, 3);
+  for (size_t i = 0; i < gray.values.size(); ++i) gray.values[i] = single->values[i / 3];
+  return gray;
 }
 
 /// Puts the colour that was asked for behind a transparent picture, which then is no more.

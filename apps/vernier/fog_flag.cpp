@@ -40,9 +40,9 @@ float number(const std::string& text, std::string_view part, const char* what, f
 
 /// sRGB, or one number for all channels.
 Rgb albedo(const std::string& text, std::string_view part) {
-  if (const auto grey = as_number(part); grey && part.size() < 6) {
-    if (*grey < 0 || *grey > 1) refuse(text, fmt::format("'{}' is no albedo from 0 to 1", part));
-    return Rgb(*grey);
+  if (const auto gray = as_number(part); gray && part.size() < 6) {
+    if (*gray < 0 || *gray > 1) refuse(text, fmt::format("'{}' is no albedo from 0 to 1", part));
+    return Rgb(*gray);
   }
   try {
     const auto [r, g, b] = parse_color(part);

@@ -49,13 +49,13 @@ void note_caustics(const RenderResult& result, const RenderFlags& flags, NoticeL
 
 /// Says so when what the camera sees of the scene comes out all but black, and what helps.
 void warn_if_black(double mean, const RenderFlags& flags, const RenderReport& report, NoticeLog& log) {
-  constexpr double black = 0.005, grey = 0.18;
+  constexpr double black = 0.005, gray = 0.18;
   if (mean * std::exp2(flags.display.exposure) >= black) return;
   std::vector<std::string> remedies;
   if (report.surroundings.name != "studio") remedies.emplace_back("--env studio lights it");
   if (mean > 0)
     remedies.push_back(
-        fmt::format("--exposure {:.0f} brightens a .png or .jpg", std::ceil(std::log2(grey / mean))));
+        fmt::format("--exposure {:.0f} brightens a .png or .jpg", std::ceil(std::log2(gray / mean))));
   log.add({Notice::Severity::warning,
            {},
            fmt::format("the picture is almost all black, its mean luminance {:.2g}{}{}", mean,

@@ -48,6 +48,8 @@ FlagChoices choices(const RenderFlags& flags, const LiveScene& scene) {
   const std::string& own = flags.surroundings.environment;
   if (std::find(surroundings.begin(), surroundings.end(), own) == surroundings.end())
     surroundings.push_back(own);
+  std::vector<std::string> filters{"", "auto"};
+  for (const Denoiser& denoiser : denoisers()) filters.emplace_back(denoiser.name);
   std::vector<std::string> animations{""};
   const size_t count = scene.file().animations().size();
   for (size_t i = 0; i < count; ++i) animations.push_back(std::to_string(i));
@@ -58,7 +60,7 @@ FlagChoices choices(const RenderFlags& flags, const LiveScene& scene) {
           {"--animation", std::move(animations)},
           {"--integrator", names_of(integrators())},
           {"--show", {raycast_outputs().begin(), raycast_outputs().end()}},
-          {"--denoise", optional(names_of(denoisers()))}};
+          {"--denoise", std::move(filters)}};
 }
 
 /// What a page shows at first where the command does not say it: a picture of moderate size and effort.

@@ -222,8 +222,10 @@ size_t denoise_bytes_per_pixel() {
 }
 
 const Denoiser& find_denoiser(std::string_view name) {
-  if (name == "auto") return OidnLibrary::find() ? *std::prev(std::end(table)) : *std::begin(table);
-  if (name == "oidn" && !OidnLibrary::find())
+  const bool is_auto = name == "auto";
+  if (is_auto && OidnLibrary::find()) return *std::prev(std::end(table));
+  if (is_auto && !OidnLibrary::is_named()) return *std::begin(table);
+  if ((is_auto || name == "oidn") && !OidnLibrary::find())
     throw Error(ErrorKind::usage, "no filter 'oidn' here: " + OidnLibrary::why_not_found());
   return find_by_name(denoisers(), "filter", name);
 }

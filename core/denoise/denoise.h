@@ -46,7 +46,7 @@ std::span<const Denoiser> denoisers();
 std::vector<std::string> denoiser_names();
 
 /// The denoiser of that name; of "auto" Open Image Denoise where its library is found, else the first. Throws
-/// Error(usage) that lists the names there are, or says why that one is not.
+/// Error(usage) that lists the names there are, or says why that one, or a library that was named, is not.
 const Denoiser& find_denoiser(std::string_view name);
 
 /// A picture denoised as two halves, so that its own error, what the filter blurs included, is known.

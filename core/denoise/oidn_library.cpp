@@ -102,6 +102,11 @@ const Search& searched() {
 
 const OidnLibrary* OidnLibrary::find() { return searched().library ? &*searched().library : nullptr; }
 
+bool OidnLibrary::is_named() {
+  const char* named = std::getenv("VERNIER_OIDN");
+  return named && *named;
+}
+
 const std::string& OidnLibrary::why_not_found() { return searched().why_not; }
 
 }  // namespace vernier

@@ -38,6 +38,9 @@ struct OidnLibrary {
   /// ~/.local, /usr/local or /usr. It is looked for once.
   static const OidnLibrary* find();
 
+  /// Whether $VERNIER_OIDN names one, so that another filter in its place would be a mistake.
+  static bool is_named();
+
   /// Why find() gives null, and what helps: a sentence's end, for messages.
   static const std::string& why_not_found();
 };

@@ -139,7 +139,11 @@ TEST_F(DenoiseCommand, UsageErrors) {
   EXPECT_THAT(unknown.err, HasSubstr("did you mean 'bilateral'"));
   setenv("VERNIER_OIDN", folder_.file("missing.so").c_str(), 1);
   const ProcessResult absent = denoise("a.exr", "b.exr", {"--filter", "oidn"});
+  const ProcessResult instead = denoise("a.exr", "b.exr", {"--filter", "auto"});
+  setenv("VERNIER_OIDN", "", 1);
+  EXPECT_EQ(denoise("a.exr", "a.exr", {"--filter", "auto"}).exit_code, 0);
   unsetenv("VERNIER_OIDN");
+  EXPECT_EQ(instead.exit_code, 2) << "it was named";
   EXPECT_EQ(absent.exit_code, 2);
   EXPECT_THAT(absent.err, HasSubstr("no filter 'oidn' here: VERNIER_OIDN: " + folder_.file("missing.so")));
   EXPECT_EQ(denoise("a.exr", "b.png", {"--view", "filmic"}).exit_code, 2);

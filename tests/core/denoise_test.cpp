@@ -8,6 +8,7 @@
 
 #include "core/base/parallel.h"
 #include "core/compare/metrics.h"
+#include "tests/support/random.h"
 #include "vernier/error.h"
 
 namespace vernier {
@@ -228,6 +229,28 @@ constexpr Denoiser darken{"darken", "", [](const NoisyImage& noisy) {
 // which six times is the most that counts.
 TEST(DenoisedError, FireflyThatStaysCountsManyTimes) {
   EXPECT_NEAR(pixel_error(keep_all, 500, 0.1f, 400), 36, 1);
+}
+
+/// Halves of a gray of 1 whose light few samples find: 10 in one pixel of ten, else nothing, of which they
+/// are sure.
+NoisyImage rarely_lit(uint64_t seed) {
+  NoisyImage half{constant(64, 64, {0, 0, 0}), constant(64, 64, {0, 0, 0})};
+  test::Random random(seed);
+  for (size_t i = 0; i < half.color.values.size(); i += 3) {
+    const float value = random.next1() < 0.1 ? 10 : 0;
+    for (size_t c = 0; c < 3; ++c) half.color.values[i + c] = half.error->values[i + c] = value;
+  }
+  return half;
+}
+
+// Pixels that both halves left black are no reason to think the truth black, of which 1 would be ten times
+// off.
+TEST(DenoisedError, SamplesThatAllMissedTheLightAreNotSure) {
+  const Denoiser right{"right", "", [](const NoisyImage& noisy) {
+                         return constant(noisy.color.width, noisy.color.height, {1, 1, 1});
+                       }};
+  const DenoisedHalves halves = denoise_halves(right, rarely_lit(1), rarely_lit(2));
+  EXPECT_LT(halves.error.rel_rmse, 3);
 }
 
 // A light that is taken away is an error of about itself.

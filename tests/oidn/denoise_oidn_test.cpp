@@ -5,11 +5,14 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 
 #include "core/base/parallel.h"
 #include "core/denoise/denoise_filters.h"
 #include "core/denoise/oidn_library.h"
 #include "tests/oidn/double.h"
+#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
 #include "vernier/error.h"
 
 // The adapter to Open Image Denoise with a double of that library in its place. What the network makes of a
@@ -50,6 +53,33 @@ TEST_F(DenoiseOidn, IsFoundWhereTheEnvironmentSays) {
   EXPECT_EQ(OidnLibrary::find()->path, VERNIER_OIDN_DOUBLE);
   EXPECT_EQ(find_denoiser("auto").name, "oidn");
   EXPECT_EQ(denoisers().back().name, "oidn");
+}
+
+/// What the command says of its filters in an environment.
+std::string told_filters(const std::string& variable, const std::string& value) {
+  const std::string named = std::getenv("VERNIER_OIDN");
+  unsetenv("VERNIER_OIDN");
+  setenv(variable.c_str(), value.c_str(), 1);
+  const test::ProcessResult told = test::run_vernier({"denoise", "--filter", "help"});
+  unsetenv(variable.c_str());
+  setenv("VERNIER_OIDN", named.c_str(), 1);
+  EXPECT_EQ(told.exit_code, 0) << told.err;
+  return told.out;
+}
+
+TEST_F(DenoiseOidn, IsFoundInAPythonEnvironment) {
+  const test::TemporaryFolder environment;
+  const std::filesystem::path folder(environment.file("lib/python3.12/site-packages/pyoidn/oidn/lib"));
+  std::filesystem::create_directories(folder);
+  std::filesystem::create_symlink(VERNIER_OIDN_DOUBLE, folder / "libOpenImageDenoise.so.2");
+  EXPECT_THAT(told_filters("VIRTUAL_ENV", environment.path().string()), HasSubstr("a trained network"));
+  EXPECT_THAT(told_filters("VERNIER_OIDN", folder.string()), HasSubstr("a trained network"));
+}
+
+TEST_F(DenoiseOidn, WhyItIsNotThereIsTold) {
+  EXPECT_THAT(told_filters("VERNIER_OIDN", ""), HasSubstr("not here: VERNIER_OIDN is empty"));
+  EXPECT_THAT(told_filters("VERNIER_OIDN", "/missing.so"), HasSubstr("not here: VERNIER_OIDN: /missing.so"));
+  EXPECT_THAT(told_filters("VERNIER_OIDN", "libm.so.6"), HasSubstr("libm.so.6 has no function oidn"));
 }
 
 TEST_F(DenoiseOidn, AsksInTheLibrarysOrder) {

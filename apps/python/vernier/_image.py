@@ -57,9 +57,9 @@ class Missing(NamedTuple):
 def _offer_oidn() -> None:
     """Tells the library, which does not know Python's path, where the package pyoidn has Open Image Denoise."""
     spec = importlib.util.find_spec("pyoidn")
-    folder = Path(spec.origin).parent / "oidn" / "lib" if spec and spec.origin else None
-    if folder and folder.is_dir():
-        os.environ.setdefault("VERNIER_OIDN", str(folder))
+    library = Path(spec.origin).parent / "oidn/lib/libOpenImageDenoise.so.2" if spec and spec.origin else None
+    if library and library.exists():
+        os.environ.setdefault("VERNIER_OIDN", str(library))
 
 
 _LAYER_NAMES = {"N": "normal", "Z": "depth", "P": "position", "UV": "uv"}
