@@ -68,7 +68,9 @@ struct Neighbors {
   float weight;
 };
 
-Neighbors neighbors(float coordinate, int size, WrapMode mode) {
+// A call would return its parts by way of the stack, where reading them together waits for each to be
+// written.
+[[gnu::always_inline]] inline Neighbors neighbors(float coordinate, int size, WrapMode mode) {
   const float position = wrapped(coordinate, mode) * float(size) - 0.5f;
   const float first = std::floor(position);
   Neighbors n{int(first), int(first) + 1, position - first};

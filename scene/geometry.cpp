@@ -208,7 +208,8 @@ SurfacePoint SceneGeometry::surface_point(uint32_t instance, uint32_t primitive,
   return point;
 }
 
-SurfacePoint SceneGeometry::surface_point(const Ray& ray, const RawHit& hit) const {
+// Flat, as the hit's numbers would else be stored one by one and read together at once, which waits.
+[[gnu::flatten]] SurfacePoint SceneGeometry::surface_point(const Ray& ray, const RawHit& hit) const {
   SurfacePoint point = surface_point(hit.instance, hit.primitive, {hit.u, hit.v}, ray.time);
   point.t = hit.t;
   point.front = dot(ray.direction, point.ng) < 0;

@@ -263,9 +263,8 @@ LightReceiver Scene::receiver(const SurfacePoint& point) const {
 
 std::optional<LightSample> Scene::sample_light(const SurfacePoint& from, double u, const Vec2d& v) const {
   const auto [light, prob] = lights_.choose(receiver(from), u);
-  if (!light) return std::nullopt;
-  auto sample = light->sample(from, v);
-  if (!sample) return std::nullopt;
+  std::optional<LightSample> sample = light ? light->sample(from, v) : std::nullopt;
+  if (!sample) return sample;
   sample->source = light->source();
   sample->light = light;
   sample->choice_prob = prob;

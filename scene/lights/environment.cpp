@@ -5,6 +5,12 @@
 #include "scene/lights/infinite_disk.h"
 
 namespace vernier {
+namespace {
+
+/// Of the angle to the vertical; w is a unit vector.
+float sine(const Vec3f& w) { return std::sqrt(w.x * w.x + w.z * w.z); }
+
+}  // namespace
 
 EnvironmentLight::EnvironmentLight(std::shared_ptr<const EnvironmentDescription> description)
     : description_(std::move(description)),
@@ -75,9 +81,9 @@ std::optional<LightSample> EnvironmentLight::sample(const SurfacePoint& from, co
   if (distribution_.empty()) return std::nullopt;
   float pdf;
   const Vec2f uv = distribution_.sample(u, pdf);
-  const float sin_theta = std::sin(uv.y * pi);
-  if (!(pdf > 0) || !(sin_theta > 0)) return std::nullopt;
   const Vec3f wi = direction(uv);
+  const float sin_theta = sine(wi);
+  if (!(pdf > 0) || !(sin_theta > 0)) return std::nullopt;
   return LightSample{wi, lookup(uv), pdf / (2 * pi * pi * sin_theta), false, from.spawn(wi), {}};
 }
 
@@ -86,16 +92,16 @@ std::optional<LightRay> EnvironmentLight::emit(const Bounds& scene, const Vec2d&
   if (distribution_.empty()) return std::nullopt;
   float pdf;
   const Vec2f uv = distribution_.sample(place, pdf);
-  const float sin_theta = std::sin(uv.y * pi);
+  const Vec3f wi = this->direction(uv);
+  const float sin_theta = sine(wi);
   if (!(pdf > 0) || !(sin_theta > 0)) return std::nullopt;
-  return emit_from_infinity(scene, -this->direction(uv), lookup(uv) * (2 * pi * pi * sin_theta / pdf),
-                            direction, time);
+  return emit_from_infinity(scene, -wi, lookup(uv) * (2 * pi * pi * sin_theta / pdf), direction, time);
 }
 
 LightEval EnvironmentLight::eval(const SurfacePoint& /*from*/, const Vec3f& wi,
                                  const SurfacePoint* /*on*/) const {
   const Vec2f uv = to_uv(wi);
-  const float sin_theta = std::sin(uv.y * pi);
+  const float sin_theta = sine(wi);
   const float pdf =
       distribution_.empty() || !(sin_theta > 0) ? 0 : distribution_.pdf(uv) / (2 * pi * pi * sin_theta);
   return {lookup(uv), pdf};

@@ -158,21 +158,26 @@ float TriangleLight::coverage(const Vec2f& barycentrics) const {
 }
 
 std::optional<LightSample> TriangleLight::sample(const SurfacePoint& from, const Vec2d& u) const {
+  std::optional<LightSample> sample;
   const View view(*this, from.position, from.time);
-  if (view.is_dark()) return std::nullopt;
+  if (view.is_dark()) return sample;
   const Vec2f place = view.sample(to_float(u));
   const Vec3f on = view.shape().at(place);
   const Vec3f to_light = on - from.position;
   const float distance2 = length_squared(to_light);
-  if (!(distance2 > 0)) return std::nullopt;
+  if (!(distance2 > 0)) return sample;
   const Vec3f wi = to_light * (1 / std::sqrt(distance2));
   const float cosine = -dot(wi, view.shape().normal);
   const Rgb radiance = emission(place, from.time, cosine > 0, -wi) * coverage(place);
   const float pdf = view.pdf(place, distance2, std::abs(cosine));
-  if (!(pdf > 0) || is_black(radiance)) return std::nullopt;
+  if (!(pdf > 0) || is_black(radiance)) return sample;
   const Shape& shape = view.shape();
-  return LightSample{
-      wi, radiance, pdf, false, from.spawn_to(on, shape.error, shape.normal, triangle_at(place)), {}};
+  sample.emplace();
+  sample->wi = wi;
+  sample->radiance = radiance;
+  sample->pdf = pdf;
+  sample->shadow = from.spawn_to(on, shape.error, shape.normal, triangle_at(place));
+  return sample;
 }
 
 std::optional<LightRay> TriangleLight::emit(const Bounds& /*scene*/, const Vec2d& place,
