@@ -18,8 +18,8 @@ namespace {
 
 /// Every bench, in the order of `vernier bench --help`.
 constexpr void (*benches[])(CLI::App&, Program&) = {
-    register_bench_rays,        register_bench_convergence, register_bench_stability,
-    register_bench_calibration, register_bench_bias,        register_bench_scale,
+    register_bench_rays, register_bench_convergence, register_bench_stability, register_bench_calibration,
+    register_bench_bias, register_bench_scale,       register_bench_profile,
 };
 
 }  // namespace

@@ -22,6 +22,7 @@ void register_bench_stability(CLI::App& bench, Program& program);
 void register_bench_calibration(CLI::App& bench, Program& program);
 void register_bench_bias(CLI::App& bench, Program& program);
 void register_bench_scale(CLI::App& bench, Program& program);
+void register_bench_profile(CLI::App& bench, Program& program);
 
 /// The lines of accelerators() called by `names`, in the table's order; "all" is every one.
 std::vector<const AcceleratorEntry*> accelerators_named(const std::vector<std::string>& names);

@@ -4,6 +4,7 @@
 // most of it for those that OpenImageIO brings. It is compiled for any processor and links nothing but the
 // C++ library. What must be known before a program begins is said here too: how it gets its memory.
 
+#include <sys/auxv.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -77,13 +78,19 @@ int refuse(const char* level) {
   return exit_cannot_run;
 }
 
+/// Where this program is: by /proc, or where that is not mounted, by the name that the kernel was given to
+/// run.
+std::filesystem::path own_file() {
+  std::error_code error;
+  auto file = std::filesystem::read_symlink("/proc/self/exe", error);
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): so the kernel gives it
+  const auto* name = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
+  return error && name ? std::filesystem::canonical(name, error) : file;
+}
+
 int run(char** argv) {
   std::error_code error;
-  const auto folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-  if (error) {
-    std::fprintf(stderr, "error: /proc/self/exe: %s; Vernier needs /proc\n", error.message().c_str());
-    return exit_cannot_run;
-  }
+  const auto folder = own_file().parent_path();
   // In a build folder there is one program, whatever was built there before.
   if (const auto built = folder / "program" / "vernier"; std::filesystem::exists(built, error))
     return is_supported(VERNIER_LEVEL) ? become(built, argv) : refuse(VERNIER_LEVEL);

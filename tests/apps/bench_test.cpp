@@ -58,6 +58,38 @@ TEST(BenchStability, WritesTheTableAsJsonAndMarkdown) {
   EXPECT_THAT(test::read_file(table), HasSubstr("| case | figure | rays | bvh | embree-fast |"));
 }
 
+double sum_of(const json& rows, const char* key) {
+  double sum = 0;
+  for (const json& row : rows) sum += row[key].get<double>();
+  return sum;
+}
+
+TEST(BenchProfile, TellsWhereTimeAndVarianceGo) {
+  test::TemporaryFolder folder;
+  const std::string file = folder.file("p.json");
+  const auto result = test::run_vernier(
+      {"bench", "profile", cornell_box, "--size", "48x48", "--spp", "8", "--max-depth", "5", "--json", file});
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("part of the variance"));
+  const auto report = json::parse(test::read_file(file));
+  const json& time = report["time"];
+  EXPECT_NEAR(sum_of(time, "share"), 1, 1e-9);
+  EXPECT_EQ(time[0]["kind"], "closest");
+  EXPECT_GT(time[0]["a_sample"], 2);
+  EXPECT_GT(time[0]["met"], 0.7) << "one side of the box is open";
+  EXPECT_GT(time[0]["blocks"], 1);
+  EXPECT_EQ(time[1]["kind"], "occlusion");
+  EXPECT_GT(time[1]["met"], 0.02) << "boxes cast shadows";
+  EXPECT_LT(time[1]["met"], 0.5);
+  EXPECT_EQ(time.back()["kind"], "rest");
+  const json& depth = report["depth"];
+  ASSERT_EQ(depth.size(), 5u);
+  EXPECT_EQ(depth[4]["max_depth"], 5);
+  EXPECT_GT(depth[4]["relative_variance_trim"], 4 * depth[1]["relative_variance_trim"].get<double>());
+  EXPECT_NEAR(sum_of(report["materials"], "pixels"), 1, 1e-9);
+  EXPECT_NEAR(sum_of(report["materials"], "share"), 1, 1e-9);
+}
+
 TEST(BenchScale, TellsWhatBuildingAndRenderingCostAsScenesGrow) {
   test::TemporaryFolder folder;
   const std::string file = folder.file("s.json");
