@@ -140,6 +140,8 @@ std::string description_of_damage(const ImageHeader& header, size_t size) {
 
 void check_size(std::span<const uint8_t> bytes, const ImageHeader& header, const std::string& name,
                 const ImageLimits& limits) {
+  const bool has_size = header.width > 0 && header.height > 0;
+  if (!has_size && !header.intact) throw input_error(name, description_of_damage(header, bytes.size()));
   check_image_size(name, header.width, header.height, 1, bytes.size(), limits, header.most_pixels_per_byte);
 }
 

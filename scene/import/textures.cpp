@@ -180,7 +180,9 @@ DecodedImage decode_image(const Document& document, int index) {
     bytes = file.span();
     if (!is_data_uri(source.uri)) image.fingerprint = fingerprint(bytes);
   }
-  const std::string name = document.files().scene_path() + place;
+  const bool is_file = source.view < 0 && !is_data_uri(source.uri);
+  const std::string name =
+      document.files().scene_path() + place + (is_file ? fmt::format(" ({})", source.uri) : "");
   if (ktx2::is_ktx2(bytes)) {
     decode_ktx2(bytes, name, image);
     return image;
@@ -202,20 +204,26 @@ DecodedImage decode_image(const Document& document, int index) {
 
 namespace {
 
+/// A texture as messages call it.
+std::string called(const Document& document, int texture) {
+  const std::string& name = document.model().textures[size_t(texture)].name;
+  return name.empty() ? "texture" : fmt::format("texture '{}'", name);
+}
+
 /// Reports how a texture's images were found: the notices of read_textures, and its error.
 void report(const Document& document, int texture, const Choice& choice, std::vector<Notice>& notices) {
   const std::string place = fmt::format("/textures/{}", texture);
-  const std::string& name = document.model().textures[size_t(texture)].name;
+  const std::string texture_called = called(document, texture);
   const char* extension = choice.failed_extension;
   if (choice.image) {
     if (extension)
-      notices.push_back({Notice::Severity::warning, place,
-                         fmt::format("the image that {} gives texture '{}' cannot be used and another stands "
-                                     "for it: {}",
-                                     extension, name, choice.problem)});
+      notices.push_back(
+          {Notice::Severity::warning, place,
+           fmt::format("the image that {} gives {} cannot be used and another stands for it: {}", extension,
+                       texture_called, choice.problem)});
     return;
   }
-  const std::string problem = fmt::format("texture '{}' cannot be read: {}", name, choice.problem);
+  const std::string problem = fmt::format("{} cannot be read: {}", texture_called, choice.problem);
   const auto& required = document.model().extensionsRequired;
   if (extension && std::find(required.begin(), required.end(), extension) != required.end())
     document.fail(place,
@@ -254,7 +262,7 @@ DecodedTextures read_textures(const Document& document, const std::vector<Wanted
     } else if (choice.image) {
       if (const std::string problem = transfer_problem(texture, *choice.image); !problem.empty())
         notices.push_back({Notice::Severity::warning, fmt::format("/textures/{}", source),
-                           fmt::format("texture '{}' {}", textures[size_t(source)].name, problem)});
+                           fmt::format("{} {}", called(document, source), problem)});
     }
     result.textures.push_back(make_texture(document, textures[size_t(source)], std::move(pixels)));
   }

@@ -151,6 +151,16 @@ TEST(References, ToMissingImagesAreMagenta) {
   EXPECT_THAT(import_error(with_image({{"uri", "../gone.png"}})), HasSubstr("--allow-outside-files"));
 }
 
+TEST(References, ToUnreadableImagesAreNamed) {
+  GltfFile file = with_image({{"uri", "cut.png"}});
+  file.json["textures"][0].erase("name");
+  const TemporaryFolder folder;
+  folder.write("cut.png", "not an image at all");
+  const SceneDescription scene = import_scene(file.save(folder));
+  EXPECT_TRUE(has_notice(scene, "texture cannot be read: "));
+  EXPECT_TRUE(has_notice(scene, "/images/0 (cut.png): not a PNG"));
+}
+
 TEST(References, ToTruncatedImagesShowWhatThereIs) {
   PngSource source;
   source.samples = {200, 100, 50};
