@@ -99,12 +99,20 @@ function addCamera(panel, choices) {
     view => view.values['--fstop'] ?? '', stop => ({'--fstop': stop}));
 }
 
-function addLight(panel, choices) {
+function addLight(panel, facts) {
+  const choices = facts.choices;
   panel.group('Light');
   panel.names('Surroundings', '--env', choices['--env'],
     {'': 'the scene’s own, or a studio', none: 'none', studio: 'studio', sky: 'sky'});
   panel.range('Turned', '--env-rotate', {low: -180, high: 180, step: 1, usual: 0, text: v => v + '°',
     usable: view => !['', 'none'].includes(view.values['--env'])});
+  // Each by the part of the light that it scatters across the subject, in mean free paths.
+  const fogs = [['haze', 0.1], ['mist', 0.3], ['fog', 1], ['thick fog', 3]].map(([name, paths]) => {
+    const density = (paths / (2 * facts.radius)).toPrecision(2);
+    return {value: String(Number(density)), text: `${name}, ${Number(density)} a metre`};
+  });
+  panel.select('Air', [{value: '', text: 'clear'}].concat(facts.radius > 0 ? fogs : []), view => view.values['--fog'],
+    density => ({'--fog': density}));
 }
 
 function addScene(panel, facts) {
@@ -123,7 +131,9 @@ function addScene(panel, facts) {
 function addRender(panel, choices) {
   panel.group('Rendering');
   panel.names('Integrator', '--integrator', choices['--integrator'],
-    {path: 'path: all light', whitted: 'whitted: direct light', raycast: 'raycast: what is met'});
+    {path: 'path: all light', whitted: 'whitted: direct light', light: 'light: paths from the lights', raycast: 'raycast: what is met'});
+  panel.names('Caustics', '--caustics', choices['--caustics'],
+    {auto: 'where lamps make some', on: 'yes', off: 'no'}, view => view.values['--integrator'] === 'path');
   panel.names('Shows', '--show', choices['--show'], {}, view => view.values['--integrator'] === 'raycast');
   panel.select('Until', efforts.map((e, i) => ({value: String(i), text: e.text})), view => {
     const {'--spp': samples, '--error': error} = view.values;
@@ -139,7 +149,7 @@ export function buildControls(parent, facts, send) {
   const panel = new Panel(parent, send);
   addPicture(panel, facts.choices);
   addCamera(panel, facts.choices);
-  addLight(panel, facts.choices);
+  addLight(panel, facts);
   addScene(panel, facts);
   addRender(panel, facts.choices);
   return view => panel.controls.forEach(control => control.update(view));

@@ -18,9 +18,9 @@ namespace {
 
 /// What a scene is described and built by.
 std::string building_key(const RenderFlags& flags) {
-  return fmt::format("{}\n{}\n{}\n{}\n{}\n{}", flags.import.variant,
+  return fmt::format("{}\n{}\n{}\n{}\n{}", flags.import.variant,
                      flags.import.time ? fmt::format("{}", *flags.import.time) : "", flags.import.animation,
-                     flags.camera.ground ? int(*flags.camera.ground) + 1 : 0, flags.accelerator, flags.fog);
+                     flags.camera.ground ? int(*flags.camera.ground) + 1 : 0, flags.accelerator);
 }
 
 std::string name_or_number(const std::string& name, size_t number) {
@@ -48,13 +48,20 @@ void LiveScene::build(const RenderRequest& request, NoticeLog& log) {
     }
     const std::string source = description.source;
     built.scene = build_scene(std::move(description), {request.flags.accelerator});
-    fill_air(*built.scene, parse_fog(request.flags.fog));
     if (request.flags.import.strict) refuse_warnings(source, built.scene->notices());
     const std::unique_lock lock(mutex_);
     built_ = std::move(built);
     built_for_ = key;
     surrounded_for_.clear();
+    fog_.clear();
     has_own_surroundings_ = true;
+    ++version_;
+  }
+  if (request.flags.fog != fog_) {
+    const Fog fog = parse_fog(request.flags.fog);
+    const std::unique_lock lock(mutex_);
+    fill_air(*built_.scene, fog);
+    fog_ = request.flags.fog;
     ++version_;
   }
   log.add(built_.notices);

@@ -74,6 +74,7 @@ class LiveScene {
   Surroundings surroundings_{"scene", nullptr};
   std::vector<Notice> surroundings_notices_;
   std::string surrounded_for_;
+  std::string fog_;                   ///< as --fog takes it
   bool has_own_surroundings_ = true;  ///< the scene, at present
   RenderSettings settings_;           ///< of the picture prepared last
   uint64_t version_ = 0;

@@ -22,8 +22,8 @@ const std::set<std::string> camera_flags{"--camera",    "--azimuth", "--elevatio
 
 /// Flags that take numbers, of which the parser of `vernier render` knows the bounds.
 const std::set<std::string> number_flags{
-    "--look-from", "--look-at",    "--up",        "--fov", "--ortho", "--fstop", "--focus",
-    "--exposure",  "--env-rotate", "--env-scale", "--at",  "--size",  "--spp",   "--error"};
+    "--look-from",  "--look-at",   "--up",  "--fov", "--ortho", "--fstop", "--focus", "--exposure",
+    "--env-rotate", "--env-scale", "--fog", "--at",  "--size",  "--spp",   "--error"};
 
 /// Flags that mean nothing, or are refused, unless another one is given.
 struct Dependent {

@@ -70,7 +70,10 @@ Json facts_json(const LiveScene& scene, const ViewFlags& flags, const std::strin
   Json animations = Json::array();
   for (const AnimationSpan& animation : scene.file().animations())
     animations.push_back({{"name", animation.name}, {"seconds", animation.seconds}});
-  return {{"file", file}, {"choices", choices}, {"animations", animations}};
+  return {{"file", file},
+          {"choices", choices},
+          {"animations", animations},
+          {"radius", scene.subject_bounds().radius()}};
 }
 
 Json view_json(uint64_t number, const std::string& command, const RenderRequest& request,
@@ -89,10 +92,12 @@ Json view_json(uint64_t number, const std::string& command, const RenderRequest&
             {"--view", request.display.view},
             {"--env", flags.surroundings.environment},
             {"--env-rotate", flags.surroundings.rotate},
+            {"--fog", flags.fog},
             {"--variant", flags.import.variant},
             {"--animation", flags.import.animation},
             {"--at", flags.import.time ? Json(*flags.import.time) : Json()},
             {"--integrator", flags.integrator},
+            {"--caustics", flags.caustics},
             {"--show", settings.integrator_options.show},
             {"--denoise", flags.denoise},
             {"--fstop", flags.camera.lens.fstop ? Json(*flags.camera.lens.fstop) : Json()},

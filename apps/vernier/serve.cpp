@@ -59,6 +59,7 @@ FlagChoices choices(const RenderFlags& flags, const LiveScene& scene) {
           {"--variant", optional(scene.file().variants())},
           {"--animation", std::move(animations)},
           {"--integrator", names_of(integrators())},
+          {"--caustics", {"auto", "on", "off"}},
           {"--show", {raycast_outputs().begin(), raycast_outputs().end()}},
           {"--denoise", std::move(filters)}};
 }

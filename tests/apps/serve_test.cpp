@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -85,6 +86,24 @@ TEST(Serve, ChangesOfDisplayAndCameraChangeThePicture) {
   EXPECT_NE(server.get("/picture").body, exposed.body);
 }
 
+TEST(Serve, FogComesAndGoes) {
+  const test::RunningServer server(small_picture);
+  EXPECT_GT(server.get("/facts").json()["radius"], 0.1);
+  test::EventStream events(server);
+  events.next("picture", is_complete);
+  const std::string clear = server.get("/picture").body;
+  const int foggy = server.post("/view", R"({"--fog":"0.5"})").json()["view"];
+  const auto view = events.next("view", [&](const auto& event) { return event["view"] == foggy; });
+  EXPECT_EQ(view["values"]["--fog"], "0.5");
+  events.next("picture", complete_picture_of(foggy));
+  EXPECT_NE(server.get("/picture").body, clear);
+  const int clear_again = server.post("/view", R"({"--fog":"","--caustics":"off"})").json()["view"];
+  events.next("picture", complete_picture_of(clear_again));
+  EXPECT_EQ(server.get("/picture").body, clear);
+  EXPECT_EQ(server.post("/view", R"({"--fog":"-1"})").status, 400);
+  EXPECT_EQ(server.post("/view", R"({"--caustics":"maybe"})").status, 400);
+}
+
 TEST(Serve, TellsWhatAPixelIsAndHowSure) {
   const test::RunningServer server(small_picture);
   test::EventStream events(server);
@@ -165,7 +184,7 @@ TEST(Serve, OnesThatDoNotReadHoldUpNobody) {
   }
   test::EventStream events(server);
   for (int i = 1; i <= 5; ++i) {
-    const auto answer = server.post("/view", R"({"--exposure":")" + std::to_string(i) + "\"}");
+    const auto answer = server.post("/view", fmt::format(R"({{"--exposure":"{}"}})", i));
     ASSERT_EQ(answer.status, 200);
     events.next("picture", complete_picture_of(answer.json()["view"]));
   }
