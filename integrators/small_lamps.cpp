@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/parallel.h"
 #include "core/sampling/warp.h"
 
 namespace vernier {
@@ -79,6 +80,15 @@ std::optional<Seen> see(const Scene& scene, const Camera& camera, const Triangle
   return Seen{triangle, area, pixels, int(std::floor(sight->raster.x)), int(std::floor(sight->raster.y))};
 }
 
+/// What the camera may see of an instance's triangles, in their order.
+std::vector<std::optional<Seen>> see_all(const Scene& scene, const Camera& camera, uint32_t instance) {
+  std::vector<std::optional<Seen>> seen(scene.geometry().triangle_count(instance));
+  parallel_for(seen.size(), [&](size_t primitive) {
+    seen[primitive] = see(scene, camera, {instance, uint32_t(primitive)});
+  });
+  return seen;
+}
+
 }  // namespace
 
 SmallLamps::SmallLamps(const Scene& scene, const Camera& camera, int width, int height)
@@ -90,8 +100,7 @@ SmallLamps::SmallLamps(const Scene& scene, const Camera& camera, int width, int 
     if (!may_be_small(scene, instance)) continue;
     looked_at += geometry_->triangle_count(instance);
     if (looked_at > most_looked_at) return;
-    for (uint32_t primitive = 0; primitive < geometry_->triangle_count(instance); ++primitive) {
-      const auto seen = see(scene, camera, {instance, primitive});
+    for (const auto& seen : see_all(scene, camera, instance)) {
       if (!seen || seen->x < 0 || seen->y < 0 || seen->x >= width || seen->y >= height) continue;
       glow.add(*seen);
       if (seen->pixels < largest) small.push_back(*seen);

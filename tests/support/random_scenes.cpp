@@ -136,6 +136,7 @@ class Maker {
     // A smooth one would be a lobe too narrow for samples of lights and too wide for a mirror.
     if (m.roughness > 0 && chance(0.2f)) m.anisotropy = random_.next1();
     if (chance(0.15f)) m.iridescence = random_.next1();
+    if (chance(0.3f)) m.diffuse_roughness = random_.next1();
     if (chance(0.2f)) {
       m.specular = random_.next1();
       m.specular_color = color(0, 1.5f);
@@ -265,6 +266,8 @@ json material_json(const MaterialDescription& m) {
                                          {"sheenRoughnessFactor", m.sheen_roughness}};
   if (m.anisotropy > 0) extensions["KHR_materials_anisotropy"]["anisotropyStrength"] = m.anisotropy;
   if (m.iridescence > 0) extensions["KHR_materials_iridescence"]["iridescenceFactor"] = m.iridescence;
+  if (m.diffuse_roughness > 0)
+    extensions["KHR_materials_diffuse_roughness"]["diffuseRoughnessFactor"] = m.diffuse_roughness;
   if (m.dispersion > 0) extensions["KHR_materials_dispersion"]["dispersion"] = m.dispersion;
   return j;
 }
