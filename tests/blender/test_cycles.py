@@ -147,6 +147,35 @@ class BesideCycles(unittest.TestCase):
                     setattr(scene.camera.data, name, value)
                 self.expect_alike(scene, 0.005)
 
+    def test_motion_blur(self):
+        """Of what moves along and turns, of what changes its shape, and of the camera."""
+        for position in ("CENTER", "START"):
+            scene = room((48, 32))
+            pictures.add_lamp("SUN", (0, 0, 9), (0.6, 0.3, 0), energy=3, angle=0)
+            cube = bpy.data.objects["Cube"]
+            for frame, x, turn in ((0, -0.2, 0.0), (1, 0.5, 0.4), (2, 1.2, 0.8)):
+                cube.location.x, cube.rotation_euler.z = x, turn
+                cube.keyframe_insert("location", frame=frame)
+                cube.keyframe_insert("rotation_euler", frame=frame)
+            bulge = pictures.add_cube(0.6, (-1, -0.4, 0.3))
+            bulge.shape_key_add(name="Basis")
+            key = bulge.shape_key_add(name="Wide")
+            for point in key.data:
+                point.co.y *= 3
+            for frame, value in ((0, 0.0), (2, 1.0)):
+                key.value = value
+                key.keyframe_insert("value", frame=frame)
+                scene.camera.location.y = 0.2 * value
+                scene.camera.keyframe_insert("location", frame=frame)
+            for curve in [curve for action in bpy.data.actions for curve in action.fcurves]:
+                for point in curve.keyframe_points:
+                    point.interpolation = "LINEAR"
+            scene.frame_set(1)
+            scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1.0
+            owner = scene.render if hasattr(scene.render, "motion_blur_position") else scene.cycles
+            owner.motion_blur_position = position
+            self.expect_alike(scene)
+
     def test_depth_of_field(self):
         scene = room()
         pictures.add_lamp("SUN", (0, 0, 9), (0.6, 0.3, 0), energy=3, angle=0)

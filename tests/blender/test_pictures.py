@@ -213,6 +213,27 @@ class Passes(unittest.TestCase):
         self.assertEqual((seen[left], seen[24], seen[right]), (1, 0, 0))
         self.assertAlmostEqual(seen.sum(), 12 * 10 / 9.5, delta=0.7)
 
+    def test_vectors_are_those_of_cycles(self):
+        scene = cube_scene()
+        cube = bpy.data.objects["Cube"]
+        for frame, x, turn in ((1, -0.5, 0.0), (2, 0.0, 0.2), (3, 0.8, 0.5)):
+            cube.location.x, cube.rotation_euler.z = x, turn
+            cube.keyframe_insert("location", frame=frame)
+            cube.keyframe_insert("rotation_euler", frame=frame)
+        scene.frame_set(2)
+        scene.view_layers[0].use_pass_vector = True
+        scene.cycles.samples, scene.cycles.use_denoising = 1, False
+        vectors = []
+        for engine in ("VERNIER", "CYCLES"):
+            scene.render.engine = engine
+            channels = pictures.rendered(scene, multilayer=True)
+            name = scene.view_layers[0].name
+            vectors.append(numpy.stack([channels[f"{name}.Vector.{letter}"] for letter in "XYZW"], axis=-1))
+        middle = numpy.s_[14:18, 22:26]  # of the cube's face
+        self.assertGreater(abs(vectors[1][middle][..., 0]).min(), 3)
+        # Cycles samples anywhere within the pixel, and the cube turns.
+        numpy.testing.assert_allclose(vectors[0][middle], vectors[1][middle], atol=0.4)
+
     def test_object_index(self):
         scene = pictures.new_scene()
         pictures.add_lamp("POINT", (3, -2, 8), energy=2000, shadow_soft_size=0.5)
@@ -252,6 +273,31 @@ class Animations(unittest.TestCase):
         scene.frame_set(2)
         numpy.testing.assert_array_equal(frames[1], pictures.colors(pictures.rendered(scene)))
         self.assertTrue((frames[0] != frames[2]).any())
+
+
+class Motion(unittest.TestCase):
+    def test_what_stands_still_is_told(self):
+        scene = cube_scene()
+        array = bpy.data.objects["Cube"].modifiers.new("Array", "ARRAY")
+        lamp = next(thing for thing in scene.objects if thing.type == "LIGHT")
+        for frame in (1, 3):
+            array.count, lamp.location.x = frame, frame
+            array.keyframe_insert("count", frame=frame)
+            lamp.keyframe_insert("location", frame=frame)
+        scene.frame_set(2)
+        scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 2.0
+        answers = []
+        original = export_session.ExportSession.export
+
+        def kept(*arguments):
+            answers.append(original(*arguments))
+            return answers[-1]
+
+        with unittest.mock.patch.object(export_session.ExportSession, "export", kept):
+            pictures.rendered(scene)
+        notes = "; ".join(answers[0]["notes"])
+        self.assertIn("lamps stand still", notes)
+        self.assertIn("keeps its shape while the shutter is open: 'Cube'", notes)
 
 
 class Misuse(unittest.TestCase):

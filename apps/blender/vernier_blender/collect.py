@@ -34,6 +34,7 @@ class PlacedMesh:
     mesh: bpy.types.Mesh
     matrix: object  # mathutils.Matrix
     pass_index: int
+    key: tuple  # the same in every frame
 
 
 @dataclass
@@ -90,8 +91,10 @@ def _collect(depsgraph, collected: Collected) -> None:
         elif thing.type in _SURFACES and instance.show_self:
             mesh = _mesh(thing, depsgraph, known)
             if mesh.polygons:
+                parent = instance.parent.name if instance.is_instance and instance.parent else ""
+                key = (thing.name, parent, tuple(instance.persistent_id))
                 collected.meshes.append(
-                    PlacedMesh(thing.name, mesh, instance.matrix_world.copy(), thing.pass_index))
+                    PlacedMesh(thing.name, mesh, instance.matrix_world.copy(), thing.pass_index, key))
         _note_strands(thing, collected.notes)
     collected.camera = _camera(depsgraph, collected.notes)
 

@@ -88,7 +88,7 @@ class _Picture:
                 for pixels in (render.resolution_x, render.resolution_y)]
         name = f"{_file_name(self._layer.name)}_{scene.frame_current:04d}"
         return {"frame": scene.frame_current, "subframe": scene.frame_subframe, "layer": self._layer.name,
-                "name": name, "size": size}
+                "name": name, "size": size, "wants_vectors": self._layer.use_pass_vector}
 
     def _watcher(self) -> Watcher:
         told = 0.0

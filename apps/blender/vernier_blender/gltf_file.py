@@ -50,6 +50,22 @@ class GltfFile:
         node = self.add("nodes", {"name": name, "matrix": _to_y_up(matrix), **content})
         self._scene.setdefault("nodes", []).append(node)
 
+    def add_animation(self, seconds: list[float]) -> "Animation":
+        return Animation(self, seconds)
+
+    def add_floats(self, rows: list[list[float]], kind: str, has_bounds: bool = False) -> int:
+        """An accessor of that type, a row of numbers an element."""
+        values = array("f", [value for row in rows for value in row])
+        uri = "data:application/octet-stream;base64," + base64.b64encode(
+            struct.pack(f"<{len(values)}f", *values)).decode()
+        buffer = self.add("buffers", {"byteLength": 4 * len(values), "uri": uri})
+        view = self.add("bufferViews", {"buffer": buffer, "byteLength": 4 * len(values)})
+        size = len(values) // len(rows)
+        bounds = {"min": [min(values[i::size]) for i in range(size)],
+                  "max": [max(values[i::size]) for i in range(size)]} if has_bounds else {}
+        return self.add("accessors", {"bufferView": view, "componentType": _FLOATS, "type": kind,
+                                      "count": len(rows), **bounds})
+
     def add_punctual_light(self, light: dict) -> int:
         lights = self._use("KHR_lights_punctual").setdefault("lights", [])
         lights.append(light)
@@ -118,6 +134,33 @@ class GltfFile:
         used = self.document.setdefault("extensionsUsed", [])
         if extension not in used:
             used.append(extension)
+
+
+class Animation:
+    """One of the file's, whose channels all have the same times."""
+
+    def __init__(self, file: GltfFile, seconds: list[float]):
+        self._file = file
+        self._times = file.add_floats([[time] for time in seconds], "SCALAR", has_bounds=True)
+        self._animation: dict = {"channels": [], "samplers": []}
+        file.add("animations", self._animation)
+
+    def add_places(self, node: int, places: list[tuple[list[float], list[float], list[float]]], now: int) -> None:
+        """Translation, rotation and scale at each time; outside the animation the node is as at time `now`."""
+        entry = self._file.document["nodes"][node]
+        entry.pop("matrix", None)
+        for part, (path, kind) in enumerate((("translation", "VEC3"), ("rotation", "VEC4"), ("scale", "VEC3"))):
+            entry[path] = places[now][part]
+            self._add(node, path, self._file.add_floats([place[part] for place in places], kind))
+
+    def add_weights(self, node: int, rows: list[list[float]]) -> None:
+        """Of the node's morph targets, at each time."""
+        self._add(node, "weights", self._file.add_floats([[weight] for row in rows for weight in row], "SCALAR"))
+
+    def _add(self, node: int, path: str, values: int) -> None:
+        samplers = self._animation["samplers"]
+        samplers.append({"input": self._times, "output": values, "interpolation": "LINEAR"})
+        self._animation["channels"].append({"sampler": len(samplers) - 1, "target": {"node": node, "path": path}})
 
 
 def _to_y_up(matrix) -> list[float]:

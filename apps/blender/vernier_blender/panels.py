@@ -65,6 +65,23 @@ class VERNIER_PT_film(_Panel, bpy.types.Panel):
         self.layout.prop(context.scene.render, "film_transparent", text="Transparent")
 
 
+class VERNIER_PT_motion_blur(_Panel, bpy.types.Panel):
+    bl_label = "Motion Blur"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.render, "use_motion_blur", text="")
+
+    def draw(self, context):
+        render, layout = context.scene.render, self.layout
+        layout.use_property_split = True
+        layout.active = render.use_motion_blur
+        owner = render if hasattr(render, "motion_blur_position") else getattr(context.scene, "cycles", None)
+        if owner:
+            layout.prop(owner, "motion_blur_position", text="Position")
+        layout.prop(render, "motion_blur_shutter")
+
+
 class VERNIER_PT_performance(_Panel, bpy.types.Panel):
     bl_label = "Performance and Files"
     bl_options = {"DEFAULT_CLOSED"}
@@ -87,7 +104,8 @@ class VERNIER_PT_passes(_Panel, bpy.types.Panel):
         layer, layout = context.view_layer, self.layout
         layout.use_property_split = True
         column = layout.column(heading="Include")
-        for name in ("use_pass_z", "use_pass_position", "use_pass_normal", "use_pass_object_index"):
+        for name in ("use_pass_z", "use_pass_position", "use_pass_normal", "use_pass_vector",
+                     "use_pass_object_index"):
             column.prop(layer, name)
         for name in ("use_pass_error", "use_pass_albedo", "use_pass_samples"):
             column.prop(layer.vernier, name)
@@ -97,8 +115,8 @@ class VERNIER_PT_passes(_Panel, bpy.types.Panel):
         layout.prop(layer, "pass_cryptomatte_depth", text="Levels")
 
 
-_CLASSES = (VERNIER_PT_sampling, VERNIER_PT_light_paths, VERNIER_PT_film, VERNIER_PT_performance,
-            VERNIER_PT_passes)
+_CLASSES = (VERNIER_PT_sampling, VERNIER_PT_light_paths, VERNIER_PT_film, VERNIER_PT_motion_blur,
+            VERNIER_PT_performance, VERNIER_PT_passes)
 
 
 def _borrowed_panels():

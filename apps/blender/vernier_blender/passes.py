@@ -49,6 +49,8 @@ _PASSES = (
     Pass("Depth", "Z", "VALUE", "depth", lambda layer: layer.use_pass_z, _depth),
     Pass("Normal", "XYZ", "VECTOR", "normal", lambda layer: layer.use_pass_normal, _z_up("N")),
     Pass("Position", "XYZ", "VECTOR", "position", lambda layer: layer.use_pass_position, _z_up("P")),
+    Pass("Vector", "XYZW", "VECTOR", "motion", lambda layer: layer.use_pass_vector,
+         _planes("Vector.X", "Vector.Y", "Vector.Z", "Vector.W")),
     Pass("IndexOB", "X", "VALUE", "id", lambda layer: layer.use_pass_object_index, _planes("pass_index")),
     Pass("Denoising Albedo", "RGB", "COLOR", "albedo", lambda layer: layer.vernier.use_pass_albedo,
          _planes("albedo.R", "albedo.G", "albedo.B")),
