@@ -165,7 +165,8 @@ std::vector<Axis> axes() {
 Json cost_json(const Cost& cost) {
   return {{"seconds", cost.seconds},
           {"processor_seconds", cost.processor},
-          {"serial_share", std::isfinite(cost.serial) ? Json(cost.serial / cost.processor) : Json(nullptr)}};
+          {"serial_share",
+           std::isfinite(cost.serial) ? Json(std::min(1.0, cost.serial / cost.processor)) : Json(nullptr)}};
 }
 
 Json point_json(const Point& point) {
