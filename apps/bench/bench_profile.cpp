@@ -174,10 +174,13 @@ void print_report(const Json& report) {
                     figure(row, "relative_variance"), figure(row, "relative_variance_trim")});
   fmt::print("{}\n", text_table(rows));
   rows = {{"first material", "pixels", "variance of a sample", "part of the variance"}};
-  for (const Json& row : report["materials"])
-    rows.push_back(
-        {row["material"], percent(row["pixels"]), figure(row, "relative_variance"), percent(row["share"])});
+  const Json& materials = report["materials"];
+  for (size_t i = 0; i < std::min(materials.size(), most_printed_materials); ++i)
+    rows.push_back({materials[i]["material"], percent(materials[i]["pixels"]),
+                    figure(materials[i], "relative_variance"), percent(materials[i]["share"])});
   fmt::print("{}", text_table(rows));
+  if (materials.size() > most_printed_materials)
+    fmt::print("and {} more, which --json lists\n", materials.size() - most_printed_materials);
 }
 
 /// Measures the scene, which answers rays by another accelerator afterwards.
