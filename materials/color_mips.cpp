@@ -27,7 +27,7 @@ void ColorMips::make_all(std::span<const Material> materials) {
           std::visit([&](const auto& image) { bytes += image->values.size() * sizeof(image->values[0]); },
                      mip);
       }
-      pyramid = std::make_unique<MipPyramid>(texture, mips->second);
+      pyramid = std::make_unique<MipPyramid>(texture, mips->second, by_alpha);
     }
   pyramids_ = std::move(pyramids);
   bytes_ = bytes;

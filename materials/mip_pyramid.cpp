@@ -86,6 +86,18 @@ BasicImage<T> halved(const BasicImage<T>& image, bool by_alpha) {
   return half;
 }
 
+/// Texels of which nothing is covered get the color of what lies around them, which interpolation mixes in.
+template <typename T>
+void fill_holes(BasicImage<T>& image, const BasicImage<T>& half) {
+  if (image.channels % 2 != 0) return;
+  const int colors = image.channels - 1;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      if (T* texel = image.pixel(x, y); texel[colors] == 0)
+        std::copy_n(half.pixel(std::min(x / 2, half.width - 1), std::min(y / 2, half.height - 1)), colors,
+                    texel);
+}
+
 /// An area by the variances of its box, times 12, along the axes of its ellipse, texels^2.
 struct Ellipse {
   float longest2, shortest2;
@@ -108,28 +120,34 @@ std::vector<TexturePixels> make_mips(const TexturePixels& picture, bool by_alpha
   std::vector<TexturePixels> mips;
   std::visit(
       [&]<typename T>(const std::shared_ptr<const BasicImage<T>>& image) {
-        for (auto last = image; last->width > 1 || last->height > 1;) {
-          last = std::make_shared<const BasicImage<T>>(halved(*last, by_alpha));
-          mips.emplace_back(last);
+        std::vector<std::shared_ptr<BasicImage<T>>> levels;
+        const BasicImage<T>* last = image.get();
+        while (last->width > 1 || last->height > 1) {
+          levels.push_back(std::make_shared<BasicImage<T>>(halved(*last, by_alpha)));
+          last = levels.back().get();
         }
+        for (size_t i = levels.size(); i-- > 1;) fill_holes(*levels[i - 1], *levels[i]);
+        mips.assign(levels.begin(), levels.end());
       },
       picture);
   return mips;
 }
 
-MipPyramid::MipPyramid(const Texture& texture, const std::vector<TexturePixels>& mips) : levels_{texture} {
+MipPyramid::MipPyramid(const Texture& texture, const std::vector<TexturePixels>& mips, bool by_alpha)
+    : levels_{texture}, by_alpha_(by_alpha) {
   size_ =
       texture.with_image([](const auto& image) { return Vec2f(float(image.width), float(image.height)); });
   for (const TexturePixels& mip : mips)
     levels_.emplace_back(mip, texture.wrap_s(), texture.wrap_t(), FilterMode::linear);
 }
 
-Rgb MipPyramid::read(size_t level, const Vec2f& uv) const {
+Vec4f MipPyramid::read(size_t level, const Vec2f& uv) const {
   const Vec4f texel = levels_[level].sample(uv, TexelEncoding::srgb);
-  return {texel.x, texel.y, texel.z};
+  const float weight = by_alpha_ ? texel.w : 1;
+  return {texel.x * weight, texel.y * weight, texel.z * weight, weight};
 }
 
-Rgb MipPyramid::sample_square(const Vec2f& uv, float side2) const {
+Vec4f MipPyramid::sample_square(const Vec2f& uv, float side2) const {
   const float wanted = 1 + side2 / 3;
   const auto level = size_t(std::ilogb(wanted) / 2);
   if (level + 1 >= levels_.size()) return read(levels_.size() - 1, uv);
@@ -140,8 +158,15 @@ Rgb MipPyramid::sample_square(const Vec2f& uv, float side2) const {
 Rgb MipPyramid::sample(const Vec2f& uv, const UvArea& area) const {
   const Vec2f p = area[0] * size_, q = area[1] * size_;
   const float reach = std::abs(p.x) + std::abs(p.y) + std::abs(q.x) + std::abs(q.y);
-  if (!(reach > least_side)) return read(0, uv);
-  if (reach > most_side) return read(levels_.size() - 1, uv);
+  const Vec4f sum = reach > least_side ? sum_over(p, q, uv) : Vec4f(0, 0, 0, 0);
+  if (sum.w > 0) return Rgb(sum.x, sum.y, sum.z) / sum.w;
+  const Vec4f texel = levels_[0].sample(uv, TexelEncoding::srgb);
+  return {texel.x, texel.y, texel.z};
+}
+
+Vec4f MipPyramid::sum_over(const Vec2f& p, const Vec2f& q, const Vec2f& uv) const {
+  if (std::max({std::abs(p.x), std::abs(p.y), std::abs(q.x), std::abs(q.y)}) > most_side)
+    return read(levels_.size() - 1, uv);
   const auto [longest2, shortest2, along] = ellipse_of(p, q);
   // Places nearer to each other than texels tell nothing new.
   const float ratio = std::sqrt(longest2 / std::max(shortest2, 1.f));
@@ -149,10 +174,10 @@ Rgb MipPyramid::sample(const Vec2f& uv, const UvArea& area) const {
   if (places == 1) return sample_square(uv, (longest2 + shortest2) / 2);
   const float side2 = std::max(shortest2, longest2 / square(float(most_places)));
   const Vec2f step = along * (std::sqrt((longest2 - side2) / float(places * places - 1))) / size_;
-  Rgb sum(0, 0, 0);
+  Vec4f sum(0, 0, 0, 0);
   for (int i = 0; i < places; ++i)
     sum += sample_square(uv + step * (float(i) - float(places - 1) / 2), side2);
-  return sum / float(places);
+  return sum;
 }
 
 }  // namespace vernier

@@ -27,17 +27,21 @@ std::vector<TexturePixels> make_mips(const TexturePixels& picture, bool by_alpha
 /// "Feline: Fast Elliptical Lines for Anisotropic Texture Mapping"), whose spread makes up the rest.
 class MipPyramid {
  public:
-  /// `mips` are make_mips() of its pixels.
-  MipPyramid(const Texture& texture, const std::vector<TexturePixels>& mips);
+  /// `mips` are make_mips() of its pixels. What is read `by_alpha` is a mean by that.
+  MipPyramid(const Texture& texture, const std::vector<TexturePixels>& mips, bool by_alpha);
 
   Rgb sample(const Vec2f& uv, const UvArea& area) const;
 
  private:
-  Rgb sample_square(const Vec2f& uv, float side2) const;
-  Rgb read(size_t level, const Vec2f& uv) const;
+  /// Of colors times their weights, and of these: over an area by its sides in texels, over a square of that
+  /// many squared texels, and at a point of a copy.
+  Vec4f sum_over(const Vec2f& p, const Vec2f& q, const Vec2f& uv) const;
+  Vec4f sample_square(const Vec2f& uv, float side2) const;
+  Vec4f read(size_t level, const Vec2f& uv) const;
 
   std::vector<Texture> levels_;  ///< the texture itself first
-  Vec2f size_;                   ///< texels of that
+  bool by_alpha_;
+  Vec2f size_;  ///< texels of that
 };
 
 }  // namespace vernier

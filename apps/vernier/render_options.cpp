@@ -120,11 +120,15 @@ void check_strict(const RenderFlags& flags, const RenderSettings& settings) {
 }
 
 /// What --draft asks for where nothing else does. Noise is all that a draft filters, and raycast has none.
+/// What textures lose is less than what a filter of noise takes of them: of a far chequered floor a draft is
+/// half as wrong (docs/textures.md).
 RenderFlags with_draft(RenderFlags flags) {
   constexpr int spp = 8;
   if (!flags.run.draft) return flags;
   if (!flags.spp && flags.time.empty() && flags.error.empty()) flags.spp = spp;
   if (flags.denoise.empty() && flags.integrator != "raycast") flags.denoise = "nlm";
+  const bool reads_areas = flags.integrator == "path" || flags.integrator == "whitted";
+  if (flags.texture_filter.empty() && reads_areas && !flags.import.strict) flags.texture_filter = "mip";
   return flags;
 }
 

@@ -53,7 +53,7 @@ MaterialDescription painted(const TextureUse& use) {
 
 MeshDescription ground() { return parallelogram({-50, 0, 50}, {100, 0, 0}, {0, 0, -100}); }
 
-CameraDescription over_ground() { return camera_at({0, 3, 20}, {0, 0, -6}, 0.35f); }
+CameraDescription over_ground() { return camera_at({0, 12, 20}, {0, 0, -6}, 0.35f); }
 
 RenderSettings settings_of(const char* filter, int spp = 1) {
   RenderSettings settings;
@@ -223,7 +223,7 @@ TEST(TextureFilter, LeavesCoverageAlone) {
     const Scene scene(std::move(description), {});
     const auto filtered = picture_of(scene, settings_of("mip")),
                exact = picture_of(scene, settings_of("none"));
-    for (size_t i = 0; i < exact.size(); ++i) EXPECT_NEAR(filtered[i], exact[i], 1e-6f);
+    for (size_t i = 0; i < exact.size(); ++i) EXPECT_NEAR(filtered[i], exact[i], 1e-3f);
     EXPECT_GT(values_of(exact).variance(), 0.1) << "holes and none";
   }
 }

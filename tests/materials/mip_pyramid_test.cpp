@@ -26,7 +26,7 @@ std::shared_ptr<const Image16> picture(int width, int height, int channels,
 }
 
 MipPyramid pyramid(const TexturePixels& pixels, WrapMode wrap, bool by_alpha = false) {
-  return {{pixels, wrap, wrap, FilterMode::linear}, make_mips(pixels, by_alpha)};
+  return {{pixels, wrap, wrap, FilterMode::linear}, make_mips(pixels, by_alpha), by_alpha};
 }
 
 const Image16& image_of(const TexturePixels& pixels) {
@@ -190,7 +190,7 @@ TEST(MipPyramid, ReadsPointsAsTexturesAre) {
   const TexturePixels noise =
       picture(9, 7, 3, [](int x, int y, int c) { return float((x * 31 + y * 17 + c * 7) % 23) / 22; });
   const Texture texture(noise, WrapMode::repeat, WrapMode::repeat, FilterMode::nearest);
-  const MipPyramid mips(texture, make_mips(noise, false));
+  const MipPyramid mips(texture, make_mips(noise, false), false);
   const float nan = std::nanf("");
   for (const float u : {0.1f, 0.77f, -3.2f, nan})
     for (const UvArea& area : {UvArea{Vec2f(0, 0), Vec2f(0, 0)},
