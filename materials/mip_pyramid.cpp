@@ -28,7 +28,7 @@ const std::vector<float>& light_of_codes() {
 template <typename T>
 T code_of(float value) {
   constexpr auto most = float(std::numeric_limits<T>::max());
-  return T(std::clamp(value, 0.f, 1.f) * most + 0.5f);
+  return T(std::lround(std::clamp(value, 0.f, 1.f) * most));
 }
 
 /// What of the texels from 2 i on the i-th of half as many covers. Of an odd number, 2 m + 1, each covers a
@@ -36,7 +36,8 @@ T code_of(float value) {
 std::array<float, 3> parts(int size, int i) {
   if (size == 1) return {1, 0, 0};
   if (size % 2 == 0) return {0.5f, 0.5f, 0};
-  const auto n = float(size), m = float(size / 2);
+  const int half = size / 2;
+  const auto n = float(size), m = float(half);
   return {(m - float(i)) / n, m / n, float(i + 1) / n};
 }
 
