@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/math/ray.h"
+#include "core/math/ray_cone.h"
 #include "core/sampling/sampler.h"
 #include "integrators/light_parts.h"
 #include "vernier/math.h"
@@ -62,6 +63,8 @@ struct SampleContext {
   const SpecularChains* chains = nullptr;
   /// Whose light to the camera is brought beside it; null: none's.
   const SmallLamps* small_lamps = nullptr;
+  /// What the camera ray stands for; textures are read at points where it is the ray alone.
+  RayCone cone{};
 };
 
 /// A way to estimate the light along a camera ray. Immutable while rendering; called from many threads.
@@ -84,7 +87,8 @@ struct IntegratorEntry {
   std::string_view name;
   std::string_view description;
   std::unique_ptr<Integrator> (*make)(const IntegratorOptions&);
-  bool splits_light = false;  ///< adds to SampleContext::parts
+  bool splits_light = false;   ///< adds to SampleContext::parts
+  bool follows_cones = false;  ///< averages textures over SampleContext::cone
 };
 
 /// All integrators (integrators/registry.cpp).

@@ -30,7 +30,9 @@ class PathIntegrator : public Integrator {
     LightRoute route;       // on which light comes to the camera; kept where parts are asked for
     SharpView view;         // whether light paths can end where the camera looks
     bool looks_through = options_.background_apart;  // the camera sees along it, through clear surfaces
+    RayCone cone = context.cone;                     // what of the picture the ray stands for
     auto hit = intersect_from_camera(scene, segment);
+    if (hit) hit->footprint = cone.width_at(hit->t);
     ++out.rays.camera;
 
     for (int vertex = 1, depth = 1;; ++vertex) {  // depth: of light that the ray meets
@@ -97,8 +99,10 @@ class PathIntegrator : public Integrator {
         view.scatter(next->is_delta);
       }
       looks_through = looks_through && !next->is_diffuse;
+      cone = next->is_delta || next->is_straight ? RayCone{hit->footprint, cone.spread} : RayCone{};
       segment = hit->spawn(next->wi);
       hit = intersect(scene, segment);
+      if (hit) hit->footprint = cone.width_at(hit->t);
       ++out.rays.bounce;
     }
     return out;

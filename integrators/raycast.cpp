@@ -59,10 +59,12 @@ class RaycastIntegrator : public Integrator {
       : output_(find_by_name(outputs, "thing to show", options.show).output),
         background_apart_(options.background_apart) {}
 
-  Estimate estimate(const Scene& scene, const Ray& ray, Sampler&, const SampleContext&) const override {
+  Estimate estimate(const Scene& scene, const Ray& ray, Sampler&,
+                    const SampleContext& context) const override {
     Estimate out;
     ++out.rays.camera;
-    const auto hit = scene.intersect(ray);
+    auto hit = scene.intersect(ray);
+    if (hit) hit->footprint = context.cone.width_at(hit->t);
     out.met_surface = hit.has_value();
     if (hit)
       out.radiance = output_(scene, ray, *hit);

@@ -15,10 +15,10 @@ std::unique_ptr<Integrator> make_raycast(const IntegratorOptions&);
 
 std::span<const IntegratorEntry> integrators() {
   static constexpr std::array<IntegratorEntry, 4> table{{
-      {"path", "path tracing: all light, unbiased; tells what it cannot find", make_path, true},
+      {"path", "path tracing: all light, unbiased; tells what it cannot find", make_path, true, true},
       {"light", "light tracing: all light but what mirrors and bending glass show the camera", make_light},
-      {"whitted", "direct light, ambient, mirror reflection and refraction", make_whitted},
-      {"raycast", "primary hits: normals, depth, ids, ... (--show)", make_raycast},
+      {"whitted", "direct light, ambient, mirror reflection and refraction", make_whitted, false, true},
+      {"raycast", "primary hits: normals, depth, ids, ... (--show)", make_raycast, false, true},
   }};
   return table;
 }

@@ -21,15 +21,17 @@ class WhittedIntegrator : public Integrator {
   }
 
   Estimate estimate(const Scene& scene, const Ray& ray, Sampler& sampler,
-                    const SampleContext&) const override {
+                    const SampleContext& sample) const override {
     TraceContext context{scene, sampler, {}, 0};
     ++context.out.rays.camera;
     const Segment segment = camera_segment(scene, ray);
     const Rgb response = camera_response(scene, segment);
-    const auto hit = intersect_from_camera(scene, segment);
+    auto hit = intersect_from_camera(scene, segment);
+    if (hit) hit->footprint = sample.cone.width_at(hit->t);
     context.out.met_surface = hit.has_value();
     context.out.radiance =
-        response * incident_radiance(context, segment, hit, {1, response, true, options_.background_apart});
+        response *
+        incident_radiance(context, segment, hit, {1, response, true, options_.background_apart, sample.cone});
     return context.out;
   }
 
@@ -53,6 +55,7 @@ class WhittedIntegrator : public Integrator {
     Rgb weight;            ///< of what it finds in the final pixel
     bool sees_emitters;    ///< false where direct lighting has counted them already
     bool sees_background;  ///< where it leaves the scene, it is the background that shows
+    RayCone cone;          ///< that it stands for
   };
 
   Rgb incident_radiance(TraceContext& context, const Segment& segment, const std::optional<Interaction>& hit,
@@ -74,7 +77,11 @@ class WhittedIntegrator : public Integrator {
     if (rays.alpha <= sharp_alpha) {
       // A lobe of some width has shown the lights in direct() already.
       const bool is_smooth = rays.alpha < Ggx::smooth_limit;
-      Carried next{carried.depth + 1, carried.weight * passed, is_smooth, false};
+      Carried next{carried.depth + 1,
+                   carried.weight * passed,
+                   is_smooth,
+                   false,
+                   {hit->footprint, carried.cone.spread}};
       radiance += trace_specular(context, *hit, reflected, rays.reflected, next);
       next.sees_background = carried.sees_background && is_smooth;
       radiance += trace_specular(context, *hit, rays.refracted, rays.transmitted, next);
@@ -88,8 +95,10 @@ class WhittedIntegrator : public Integrator {
     carried.weight *= factor;
     if (max_component(carried.weight) < options_.cutoff) return {0, 0, 0};
     const Segment segment = from.spawn(direction);
+    auto hit = intersect(context.scene, segment);
+    if (hit) hit->footprint = carried.cone.width_at(hit->t);
     ++context.out.rays.bounce;
-    return factor * incident_radiance(context, segment, intersect(context.scene, segment), carried);
+    return factor * incident_radiance(context, segment, hit, carried);
   }
 
   /// `weight`: of what this returns in the final pixel.

@@ -4,14 +4,6 @@
 namespace vernier {
 namespace {
 
-/// KHR_texture_transform: translation * rotation * scale on column vectors, v downwards.
-Vec2f transform_uv(const TextureUse& use, const Vec2f& uv) {
-  const float u = uv.x * use.scale.x, v = uv.y * use.scale.y;
-  if (use.rotation == 0) return {u + use.offset.x, v + use.offset.y};
-  const float c = std::cos(use.rotation), s = std::sin(use.rotation);
-  return {c * u + s * v + use.offset.x, -s * u + c * v + use.offset.y};
-}
-
 Rgb rgb(const Vec4f& v) { return {v.x, v.y, v.z}; }
 
 /// Beer-Lambert coefficient that leaves `color` after `distance` (KHR_materials_volume).
@@ -50,17 +42,9 @@ int texcoord_of_tangents(const MaterialDescription& d) {
 
 }  // namespace
 
-Vec2f SurfaceAttributes::further_texcoord(int set) const {
-  if (!mesh || size_t(set) >= mesh->texcoord_set_count()) return {0, 0};
-  const auto& texcoords = mesh->texcoord_set(size_t(set));
-  if (texcoords.empty()) return {0, 0};
-  const auto& [a, b, c] = mesh->triangles[triangle];
-  const auto [u, v] = std::pair(barycentrics.x, barycentrics.y);
-  return texcoords[a] * (1 - u - v) + texcoords[b] * u + texcoords[c] * v;
-}
-
-Material::Material(const MaterialDescription& description, std::span<const Texture> textures, bool has_colors)
-    : description_(description), textures_(textures), has_colors_(has_colors) {
+Material::Material(const MaterialDescription& description, std::span<const Texture> textures, bool has_colors,
+                   const ColorMips* mips)
+    : description_(description), textures_(textures), mips_(mips), has_colors_(has_colors) {
   const auto& d = description_;
   const bool bsdf_varies = has_colors || has_bsdf_texture(d);
   needs_attributes_ = bsdf_varies || has_normal_maps() || d.emissive_texture;
@@ -116,20 +100,6 @@ Material::Side Material::make_side(bool front, const Rgb& outside_ior) const {
 Material::Side Material::side(const BsdfContext& context) const {
   if (context.outside_ior == Rgb(1, 1, 1)) return sides_[context.front];
   return make_side(context.front, context.outside_ior);
-}
-
-Vec4f Material::read(const TextureUse& use, const SurfaceAttributes& attributes,
-                     TexelEncoding encoding) const {
-  if (!use) return {1, 1, 1, 1};
-  return textures_[size_t(use.texture)].sample(transform_uv(use, attributes.texcoord(use.texcoord)),
-                                               encoding);
-}
-
-Vec4f Material::base_color(const SurfaceAttributes& attributes) const {
-  Vec4f color =
-      description_.base_color * read(description_.base_color_texture, attributes, TexelEncoding::srgb);
-  if (has_colors_) color *= attributes.color;
-  return color;
 }
 
 Bsdf Material::bsdf(const SurfaceAttributes& attributes, const BsdfContext& context) const {
@@ -189,7 +159,7 @@ void Material::read_dielectric(const SurfaceAttributes& attributes, const BsdfCo
   const auto& d = description_;
   // KHR_materials_specular on top of KHR_materials_ior; an index of 0 asks for full reflectance.
   const float f90 = d.specular * read(d.specular_texture, attributes, TexelEncoding::linear).w;
-  const Rgb color = d.specular_color * rgb(read(d.specular_color_texture, attributes, TexelEncoding::srgb));
+  const Rgb color = d.specular_color * read_color(d.specular_color_texture, attributes);
   const float f0 = d.ior == 0 ? 1 : f0_from_ior(d.ior / context.outside_ior[1]);
   base.dielectric = {color, f90, base.metal.film};
   for (int c = 0; c < 3; ++c) base.dielectric.f0[c] = std::min(f0 * color[c], 1.f) * f90;
@@ -199,8 +169,8 @@ void Material::read_dielectric(const SurfaceAttributes& attributes, const BsdfCo
       d.diffuse_transmission * read(d.diffuse_transmission_texture, attributes, TexelEncoding::linear).w;
   if (weight <= 0) return;
   base.body.reflected = base.color * (1 - weight);
-  base.body.transmitted = d.diffuse_transmission_color * weight *
-                          rgb(read(d.diffuse_transmission_color_texture, attributes, TexelEncoding::srgb));
+  base.body.transmitted =
+      d.diffuse_transmission_color * weight * read_color(d.diffuse_transmission_color_texture, attributes);
 }
 
 ThinFilm Material::read_film(const SurfaceAttributes& attributes) const {
@@ -216,7 +186,7 @@ ThinFilm Material::read_film(const SurfaceAttributes& attributes) const {
 Sheen Material::read_sheen(const SurfaceAttributes& attributes) const {
   const auto& d = description_;
   if (is_black(d.sheen_color)) return {};
-  const Rgb color = d.sheen_color * rgb(read(d.sheen_color_texture, attributes, TexelEncoding::srgb));
+  const Rgb color = d.sheen_color * read_color(d.sheen_color_texture, attributes);
   return {color, d.sheen_roughness * read(d.sheen_roughness_texture, attributes, TexelEncoding::linear).w};
 }
 
@@ -261,54 +231,9 @@ Rgb Material::emission(const SurfaceAttributes& attributes, bool front, float co
   if (!front && !d.double_sided) return {0, 0, 0};
   if (d.unlit) return rgb(base_color(attributes));
   Rgb radiance = d.emissive;
-  if (d.emissive_texture) radiance *= rgb(read(d.emissive_texture, attributes, TexelEncoding::srgb));
+  if (d.emissive_texture) radiance *= read_color(d.emissive_texture, attributes);
   if (has_coat()) radiance *= 1 - Clearcoat{coat_weight(attributes)}.reflectance(std::abs(cos_theta));
   return radiance;
-}
-
-float Material::emissive_texels(const std::array<SurfaceAttributes, 3>& corners) const {
-  const auto texels = [&](const TextureUse& use) {
-    if (!use) return 0.f;
-    const auto at = [&](size_t i) { return transform_uv(use, corners[i].texcoord(use.texcoord)); };
-    const Vec2f a = at(1) - at(0), b = at(2) - at(0);
-    const float size = textures_[size_t(use.texture)].with_image(
-        [](const auto& image) { return float(image.width) * float(image.height); });
-    return std::abs(a.x * b.y - a.y * b.x) / 2 * size;
-  };
-  const float emitted = texels(description_.emissive_texture);
-  return is_opaque() ? emitted : std::max(emitted, texels(description_.base_color_texture));
-}
-
-float Material::coverage(const SurfaceAttributes& attributes) const {
-  if (description_.alpha_mode == AlphaMode::opaque) return 1;
-  const float alpha = base_color(attributes).w;
-  if (description_.alpha_mode == AlphaMode::mask) return alpha >= description_.alpha_cutoff ? 1.f : 0.f;
-  return std::clamp(alpha, 0.f, 1.f);
-}
-
-Vec3f Material::read_normal(const TextureUse& use, float scale, const SurfaceAttributes& attributes) const {
-  if (!use) return {0, 0, 1};
-  const Vec4f texel = read(use, attributes, TexelEncoding::linear);
-  return normalize(
-      Vec3f((2 * texel.x - 1) * scale, (2 * texel.y - 1) * scale, std::max(2 * texel.z - 1, 1e-3f)));
-}
-
-Vec3f Material::tangent_space_normal(const SurfaceAttributes& attributes) const {
-  return read_normal(description_.normal_texture, description_.normal_scale, attributes);
-}
-
-Vec3f Material::tangent_space_coat_normal(const SurfaceAttributes& attributes) const {
-  return read_normal(description_.clearcoat_normal_texture, description_.clearcoat_normal_scale, attributes);
-}
-
-Vec2f Material::anisotropy_direction(const SurfaceAttributes& attributes) const {
-  const float c = std::cos(description_.anisotropy_rotation), s = std::sin(description_.anisotropy_rotation);
-  if (!description_.anisotropy_texture) return {c, s};
-  const Vec4f texel = read(description_.anisotropy_texture, attributes, TexelEncoding::linear);
-  const Vec2f d(2 * texel.x - 1, 2 * texel.y - 1);
-  const float length2 = d.x * d.x + d.y * d.y;
-  if (length2 < 1e-6f) return {c, s};
-  return Vec2f(c * d.x - s * d.y, s * d.x + c * d.y) * (1 / std::sqrt(length2));
 }
 
 }  // namespace vernier

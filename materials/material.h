@@ -5,6 +5,7 @@
 #include <span>
 
 #include "materials/bsdf.h"
+#include "materials/color_mips.h"
 #include "vernier/material.h"
 #include "vernier/scene.h"
 #include "vernier/texture.h"
@@ -20,7 +21,14 @@ struct SurfaceAttributes {
   uint32_t triangle = 0;
   Vec2f barycentrics{0, 0};
 
+  /// What of the triangle the point stands for where textures of colors are averaged: sides of a
+  /// parallelogram in barycentrics, with `mesh` to find texture coordinates in.
+  bool has_footprint = false;
+  std::array<Vec2f, 2> footprint{Vec2f(0, 0), Vec2f(0, 0)};
+
   Vec2f texcoord(int set) const { return set < 2 ? uv[size_t(set)] : further_texcoord(set); }
+  /// The footprint in texture coordinates.
+  UvArea texcoord_area(int set) const;
 
  private:
   Vec2f further_texcoord(int set) const;
@@ -39,8 +47,10 @@ struct BsdfContext {
 /// textures it was compiled with.
 class Material {
  public:
-  /// `has_colors`: the mesh has vertex colours, which multiply the base colour.
-  Material(const MaterialDescription& description, std::span<const Texture> textures, bool has_colors);
+  /// `has_colors`: the mesh has vertex colours, which multiply the base colour. `mips`: of the same textures,
+  /// for attributes with a footprint; null: all are read at points.
+  Material(const MaterialDescription& description, std::span<const Texture> textures, bool has_colors,
+           const ColorMips* mips = nullptr);
 
   /// The scattering at a point.
   Bsdf bsdf(const SurfaceAttributes& attributes, const BsdfContext& context) const;
@@ -58,6 +68,15 @@ class Material {
   Vec3f tangent_space_coat_normal(const SurfaceAttributes& attributes) const;
   /// Direction in tangent space, unit, in which highlights are stretched; only if is_anisotropic().
   Vec2f anisotropy_direction(const SurfaceAttributes& attributes) const;
+
+  /// A texture whose colors are averaged over footprints, those of cut surfaces by how much there is of them.
+  /// All else shapes lobes, of which the mean is none of the same shape, or is coverage, whose mean would
+  /// make cut surfaces thinner: it is read at points.
+  struct ColorTexture {
+    int index;
+    bool by_alpha;
+  };
+  std::vector<ColorTexture> color_textures() const;
 
   bool needs_attributes() const { return needs_attributes_; }
   /// Something is told in tangent space: normals or the direction of anisotropy.
@@ -129,6 +148,9 @@ class Material {
   Side make_side(bool front, const Rgb& outside_ior) const;
 
   Vec4f read(const TextureUse& use, const SurfaceAttributes& attributes, TexelEncoding encoding) const;
+  /// Of sRGB colors, over the footprint where there is one.
+  Rgb read_color(const TextureUse& use, const SurfaceAttributes& attributes) const;
+  Rgb read_area(const TextureUse& use, const SurfaceAttributes& attributes, bool by_alpha) const;
   Vec4f base_color(const SurfaceAttributes& attributes) const;
   Vec3f read_normal(const TextureUse& use, float scale, const SurfaceAttributes& attributes) const;
 
@@ -146,6 +168,7 @@ class Material {
 
   MaterialDescription description_;
   std::span<const Texture> textures_;
+  const ColorMips* mips_;
   bool has_colors_;
   bool needs_attributes_ = false;
   bool is_constant_ = false;  ///< nothing of the BSDF depends on the place

@@ -93,6 +93,18 @@ Ray Camera::ray(const Place& place, const Vec2f& raster, const Vec2f& on_lens) c
   return ray;
 }
 
+RayCone Camera::pixel_cone(const Vec2f& raster) const {
+  if (kind_ == CameraDescription::Kind::panorama) {
+    const float across = std::abs(std::sin(pi * raster.y / height_));
+    return {0, pi * std::sqrt(2 * across / (width_ * height_))};
+  }
+  const float side = 2 * std::sqrt(half_extent_.x * half_extent_.y / (width_ * height_));
+  if (kind_ == CameraDescription::Kind::orthographic) return {side, 0};
+  // A pixel on the image plane, which is farther away than 1 and seen from the side.
+  const float cosine2 = 1 / (1 + on_image_plane(raster).length2());
+  return {0, side * std::pow(cosine2, 0.75f)};
+}
+
 float Camera::depth(const Ray& ray, float t) const {
   return kind_ == CameraDescription::Kind::panorama ? t : -t * dot(ray.direction, place_.back);
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/math/ray.h"
+#include "core/math/ray_cone.h"
 #include "vernier/scene.h"
 
 namespace vernier {
@@ -31,6 +32,8 @@ class Camera {
   bool moves() const { return !moments_.empty(); }
   /// The same rays at a time of the shutter; without a point of the lens, through its centre.
   Ray ray(const Vec2f& raster, const std::optional<Vec2f>& on_lens, float time) const;
+  /// Of the rays through a square of one pixel about a raster position, the lens left out of account.
+  RayCone pixel_cone(const Vec2f& raster) const;
   /// How a point of the world is seen.
   struct Sight {
     Vec3f origin;  ///< of the ray to it

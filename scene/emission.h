@@ -10,7 +10,7 @@ namespace vernier {
 inline Rgb emission(const SceneGeometry& geometry, const Material& material, const SurfacePoint& point,
                     bool front, const Vec3f& wo) {
   const SurfaceAttributes attributes =
-      material.needs_attributes() ? geometry.attributes(point) : SurfaceAttributes{};
+      material.needs_attributes() ? geometry.attributes(point, wo) : SurfaceAttributes{};
   const float cosine = material.has_coat() ? dot(geometry.shading_normal(point), wo) : 1;
   return material.emission(attributes, front, cosine);
 }

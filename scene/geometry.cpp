@@ -238,6 +238,13 @@ SurfaceAttributes SceneGeometry::attributes(const SurfacePoint& point) const {
   return attributes;
 }
 
+SurfaceAttributes SceneGeometry::attributes(const SurfacePoint& point, const Vec3f& w) const {
+  SurfaceAttributes attributes = this->attributes(point);
+  if (point.footprint > 0) [[unlikely]]
+    add_footprint(attributes, point, w);
+  return attributes;
+}
+
 Vec3f SceneGeometry::shading_normal(const SurfacePoint& point) const {
   const Instance& placed = instances_[point.instance];
   const MeshDescription& mesh = meshes_[placed.mesh];

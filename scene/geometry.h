@@ -67,6 +67,9 @@ class SceneGeometry {
                              float time) const;
 
   SurfaceAttributes attributes(const SurfacePoint& point) const;
+  /// The same of a point that is met along the unit direction w or against it: with the footprint, if it has
+  /// one.
+  SurfaceAttributes attributes(const SurfacePoint& point, const Vec3f& w) const;
 
   /// World-space unit normal interpolated from the vertices (the geometric one where a mesh has none), front
   /// side.
@@ -80,6 +83,8 @@ class SceneGeometry {
   TangentFrame tangent_frame(const SurfacePoint& point, const Vec3f& normal, int texcoord) const;
 
  private:
+  void add_footprint(SurfaceAttributes& attributes, const SurfacePoint& point, const Vec3f& w) const;
+
   struct Instance {
     uint32_t mesh = 0, material = 0;
     Transform to_world;

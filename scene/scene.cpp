@@ -92,7 +92,7 @@ void Scene::compile_materials(const SceneDescription& description) {
     const std::tuple key(geometry_.material_of(i), geometry_.has_colors(i), bool(is_cut[i]),
                          boundaries.is_thin(i));
     const auto [entry, is_new] = compiled.try_emplace(key, uint32_t(materials_.size()));
-    if (is_new) materials_.emplace_back(material, textures_, geometry_.has_colors(i));
+    if (is_new) materials_.emplace_back(material, textures_, geometry_.has_colors(i), &color_mips_);
     material_of_instance_.push_back(entry->second);
   }
   volumes_ = VolumeSet(boundaries, geometry_, materials_, material_of_instance_);
@@ -230,7 +230,7 @@ std::optional<SurfacePoint> Scene::intersect(const Ray& ray) const {
 Shading Scene::shade(const SurfacePoint& point, const Vec3f& wo, BsdfContext context) const {
   const Material& material = this->material(point);
   const SurfaceAttributes attributes =
-      material.needs_attributes() ? geometry_.attributes(point) : SurfaceAttributes{};
+      material.needs_attributes() ? geometry_.attributes(point, wo) : SurfaceAttributes{};
   const float side = point.front ? 1.f : -1.f;
   const Vec3f ng = point.ng * side;
   // A normal turned away from the viewer has no meaning; the true one has.

@@ -37,6 +37,11 @@ class Scene {
   /// What fills it; of density 0: nothing.
   const Fog& fog() const { return fog_; }
 
+  /// Makes what surface points with a footprint read their colors from, once, whoever asks first; others
+  /// need not. All else may go on meanwhile.
+  void make_color_mips() const { color_mips_.make(materials_); }
+  const ColorMips& color_mips() const { return color_mips_; }
+
   /// Answers rays by another accelerator of the same geometry from now on. Not while other threads use the
   /// scene.
   void replace_accelerator(std::unique_ptr<Accelerator> accelerator) {
@@ -117,6 +122,7 @@ class Scene {
   SceneNames names_;
   SceneGeometry geometry_;
   std::vector<Texture> textures_;
+  mutable ColorMips color_mips_{textures_};
   std::vector<Material> materials_;
   std::vector<uint32_t> material_of_instance_;  ///< index into materials_
   VolumeSet volumes_;

@@ -19,6 +19,9 @@ struct SurfacePoint {
   uint32_t instance = 0, primitive = 0;
   bool front = true;               ///< met from the front side
   float time = middle_of_shutter;  ///< at which it is there, as Ray::time
+  /// Metres, side of the square about the ray to it that it stands for (RayCone): textures of colors are
+  /// averaged over what it covers of the surface. 0: the point alone.
+  float footprint = 0;
 
   TriangleId triangle() const { return {instance, primitive}; }
   bool is_in_medium() const { return instance == TriangleId::none; }

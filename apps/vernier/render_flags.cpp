@@ -49,6 +49,11 @@ void add_quality_flags(CLI::App& command, RenderFlags& flags) {
       .add_option("--filter", flags.filter, "what a pixel shows of its surroundings; 'help' lists filters")
       ->type_name("NAME[:WIDTH]")
       ->capture_default_str();
+  command
+      .add_option("--texture-filter", flags.texture_filter,
+                  "colors of textures: none (read at points, unbiased) or mip (averaged over what a sample "
+                  "stands for, WIDTH pixels at first: less noise, approximated; docs/textures.md)")
+      ->type_name("none|mip[:WIDTH]");
   command.add_option("--seed", flags.seed, "seed of the random numbers")
       ->transform(whole_number(0, std::numeric_limits<uint64_t>::max()))
       ->type_name("N")

@@ -31,6 +31,7 @@ struct RenderFlags {
   std::optional<int> spp;
   std::string time, error, size, crop;
   std::string filter = "box";
+  std::string texture_filter;  ///< empty: not given
   std::string adaptive = "on";
   std::string caustics = "auto";
   uint64_t seed = 0;

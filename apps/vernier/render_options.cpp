@@ -22,6 +22,7 @@
 #include "core/image/image_io.h"
 #include "integrators/render/pixel_filter.h"
 #include "integrators/render/settings_identity.h"
+#include "integrators/render/texture_filter.h"
 #include "scene/accel/accelerator.h"
 #include "vernier/error.h"
 
@@ -67,6 +68,8 @@ RenderSettings make_settings(const RenderFlags& flags) {
   options.integrator_options.caustics = parse_caustics(flags.caustics);
   make_integrator(options.integrator, options.integrator_options);  // or it throws
   options.filter = parse_filter(flags.filter);
+  if (!flags.texture_filter.empty()) options.texture_filter = parse_texture_filter(flags.texture_filter);
+  check_texture_filter(options);
   options.row_exposure = row_exposure_of(flags.run.shutter);
   options.seed = flags.seed;
   if (!flags.time.empty()) options.limits.seconds = parse_seconds(flags.time);
@@ -107,12 +110,25 @@ DisplayOptions choose_display(const RenderFlags& flags) {
   return with_chosen_view(display);
 }
 
+/// Throws Error(usage) where what is asked for to the letter is to be approximated.
+void check_strict(const RenderFlags& flags, const RenderSettings& settings) {
+  if (flags.import.strict && settings.texture_filter.is_on())
+    throw Error(ErrorKind::usage, {}, "--texture-filter",
+                fmt::format("{} approximates the colors of textures, and --strict asks for a scene that is "
+                            "honoured exactly; leave one of both out",
+                            texture_filter_text(settings.texture_filter)));
+}
+
 /// What --draft asks for where nothing else does. Noise is all that a draft filters, and raycast has none.
+/// What textures lose is less than what a filter of noise takes of them: of a far chequered floor a draft is
+/// half as wrong (docs/textures.md).
 RenderFlags with_draft(RenderFlags flags) {
   constexpr int spp = 8;
   if (!flags.run.draft) return flags;
   if (!flags.spp && flags.time.empty() && flags.error.empty()) flags.spp = spp;
   if (flags.denoise.empty() && flags.integrator != "raycast") flags.denoise = "nlm";
+  const bool reads_areas = flags.integrator == "path" || flags.integrator == "whitted";
+  if (flags.texture_filter.empty() && reads_areas && !flags.import.strict) flags.texture_filter = "mip";
   return flags;
 }
 
@@ -195,6 +211,7 @@ RenderRequest check_render_flags(const RenderFlags& given) {
   request.flags.camera.turns = flags.run.turntable.has_value();
   if (!flags.accelerator.empty()) find_by_name(accelerators(), "accelerator", flags.accelerator);
   request.settings = make_settings(flags);
+  check_strict(flags, request.settings);
   request.settings.background = choose_background(flags.background, named_outputs(flags));
   request.progress = parse_progress(flags);
   request.layer_list = choose_layers(flags);

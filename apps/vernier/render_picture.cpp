@@ -115,6 +115,7 @@ PictureOutcome render_picture(const RenderRequest& request, PosedScene& posed, c
 
   run(session, request, context.place);
   const RenderResult& result = session.result();
+  if (report.settings.texture_filter.is_on()) report.texture_mip_bytes = posed.scene()->color_mips().bytes();
   warn_of_result(result, *posed.scene(), flags, report, log);
 
   Stopwatch watch;

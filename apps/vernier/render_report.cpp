@@ -15,6 +15,7 @@
 #include "apps/vernier/missing_text.h"
 #include "core/base/quantities.h"
 #include "integrators/render/pixel_filter.h"
+#include "integrators/render/texture_filter.h"
 
 namespace vernier::apps {
 namespace {
@@ -41,6 +42,8 @@ Json picture_json(const RenderReport& report, const RenderFlags& flags, const Re
                   {"camera", report.camera},
                   {"surroundings", report.surroundings.name},
                   {"filter", filter_text(report.settings.filter)},
+                  {"texture_filter", texture_filter_text(report.settings.texture_filter)},
+                  {"texture_mip_bytes", report.texture_mip_bytes},
                   {"background", background_text(report.settings.background)},
                   {"seed", flags.seed},
                   {"max_depth", flags.integrator_options.max_depth},
@@ -152,6 +155,8 @@ Metadata image_metadata(const RenderReport& report, const RenderFlags& flags, co
       {"vernier:size", fmt::format("{}x{}", report.settings.width, report.settings.height)},
   };
   metadata.merge(result_metadata(result));
+  if (const TextureFilter& filter = report.settings.texture_filter; filter.is_on())
+    metadata["vernier:textureFilter"] = texture_filter_text(filter) + " (approximated)";
   if (report.lens) metadata["vernier:lens"] = lens_text(*report.lens);
   if (report.settings.crop.width > 0) metadata["vernier:crop"] = crop_text(report.settings.crop);
   return metadata;
@@ -196,16 +201,20 @@ std::string scene_lines(const RenderReport& report) {
          fmt::format("accelerator: {}, {}, built in {}\n", report.accelerator,
                      format_bytes(double(report.accelerator_stats.bytes)),
                      format_seconds(report.accelerator_stats.build_seconds)) +
-         fmt::format("rendering {}x{}, filter {}{}, on {} threads, {} of memory in use at most so far\n",
-                     report.settings.width, report.settings.height, filter_text(report.settings.filter),
-                     report.lens ? ", " + lens_text(*report.lens) : "", report.threads,
-                     format_bytes(double(peak_memory_bytes())));
+         fmt::format(
+             "rendering {}x{}, filter {}, texture filter {}{}, on {} threads, {} of memory in use at most so "
+             "far\n",
+             report.settings.width, report.settings.height, filter_text(report.settings.filter),
+             texture_filter_text(report.settings.texture_filter),
+             report.lens ? ", " + lens_text(*report.lens) : "", report.threads,
+             format_bytes(double(peak_memory_bytes())));
 }
 
 std::string summary_line(const RenderReport& report, const RenderResult& result) {
   return fmt::format("wrote {}: {}x{}, {:.4g} spp{}, load {}, build {}, render {}, {} rays/s{}",
                      written(report), result.film.width(), result.film.height(), samples_per_pixel(result),
-                     error_text(result.error) + missing_text(result.missing),
+                     error_text(result.error) + missing_text(result.missing) +
+                         (report.settings.texture_filter.is_on() ? " + textures approximated" : ""),
                      format_seconds(report.load_seconds), format_seconds(report.build_seconds),
                      format_seconds(result.seconds), format_count(rate(total(result.rays), result.seconds)),
                      shortfall(report, result));

@@ -26,6 +26,7 @@ struct RenderReport {
   SceneCounts counts;
   AcceleratorStats accelerator_stats;
   RenderSettings settings;
+  size_t texture_mip_bytes = 0;  ///< of copies made for the texture filter
   unsigned threads = 0;
   std::string kept;                ///< checkpoint, where no picture is asked for
   std::vector<std::string> files;  ///< pictures that have been written

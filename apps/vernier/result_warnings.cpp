@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "apps/vernier/missing_text.h"
+#include "integrators/render/texture_filter.h"
 #include "integrators/render/visible_light.h"
 #include "scene/camera.h"
 
@@ -47,6 +48,16 @@ void note_caustics(const RenderResult& result, const RenderFlags& flags, NoticeL
        "that begin at the lamps; --caustics off leaves it out, and takes less time"});
 }
 
+/// An approximation, and what becomes of it.
+void note_texture_filter(const RenderSettings& settings, NoticeLog& log) {
+  if (!settings.texture_filter.is_on()) return;
+  log.add({Notice::Severity::info,
+           {},
+           fmt::format("colors of textures are averaged over what a sample stands for (--texture-filter {}): "
+                       "the blur is not in the error, and is less the more samples a pixel has",
+                       texture_filter_text(settings.texture_filter))});
+}
+
 /// Says so when what the camera sees of the scene comes out all but black, and what helps.
 void warn_if_black(double mean, const RenderFlags& flags, const RenderReport& report, NoticeLog& log) {
   constexpr double black = 0.005, gray = 0.18;
@@ -69,6 +80,7 @@ void warn_of_result(const RenderResult& result, const Scene& scene, const Render
   warn_of_bad_samples(result, flags, log);
   warn_of_bad_light_paths(result, log);
   note_caustics(result, flags, log);
+  note_texture_filter(report.settings, log);
   warn_of_missing_light(result, flags.integrator_options.max_depth, log);
   if (!shows_light(flags)) return;
   const RenderSettings& settings = report.settings;

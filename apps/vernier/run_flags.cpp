@@ -62,7 +62,8 @@ void add_jobs_flag(CLI::App& command, RunFlags& flags) {
 }
 
 void add_preview_flags(CLI::App& command, RunFlags& flags) {
-  command.add_flag("--draft", flags.draft, "a look at it: --spp 8 --denoise nlm, unless others are given");
+  command.add_flag("--draft", flags.draft,
+                   "a look at it: --spp 8 --denoise nlm --texture-filter mip, unless others are given");
   command
       .add_option("--write-every", flags.write_every,
                   "write the picture so far this often while rendering: 2s, 1m, never (2s on a terminal)")

@@ -4,6 +4,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #ifdef VERNIER_TSAN
 #include <sanitizer/tsan_interface.h>
@@ -39,6 +40,10 @@ void for_each_range(size_t count, const void* loop, void (*part)(const void*, si
     part(loop, range.begin(), range.end());
     order.end();
   });
+}
+
+void call_isolated(const void* what, void (*act)(const void*)) {
+  tbb::this_task_arena::isolate([&] { act(what); });
 }
 
 ThreadLimit::ThreadLimit(unsigned threads)

@@ -68,6 +68,19 @@ struct PixelFilter {
   float width = 1;  ///< pixels from one end to the other, 0.1 to 16
 };
 
+/// Whether textures of colours are averaged over what a camera sample stands for before they are shaded,
+/// rather than read at its point: an approximation, as light need not be proportional to a colour, and blurs
+/// the picture by as much again as a pixel does. It becomes exact as samples grow: the n-th sample of a pixel
+/// stands for a square of `width` / sqrt(n) pixels a side. Where the camera looks directly, through clear
+/// surfaces and by mirrors; coverage, normals and all that shapes a lobe are read at the point.
+struct TextureFilter {
+  enum class Kind { none, mip };
+  Kind kind = Kind::none;
+  float width = 1;  ///< pixels, 0.1 to 16
+
+  bool is_on() const { return kind != Kind::none; }
+};
+
 /// Lights whose part of a picture is kept apart.
 struct LightGroup {
   std::string name;
@@ -89,6 +102,7 @@ struct VERNIER_API RenderSettings {
   Crop crop;                  ///< what is rendered; zero width: everything
   CameraDescription camera;
   PixelFilter filter;
+  TextureFilter texture_filter;
   Background background;
   std::string integrator = "path";
   IntegratorOptions integrator_options;

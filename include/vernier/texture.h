@@ -22,8 +22,10 @@ using TexturePixels = std::variant<std::shared_ptr<const Image8>, std::shared_pt
 /// has it. Pixels are shared between textures of one image and stay in the bits that they came in.
 class VERNIER_API Texture {
  public:
-  Texture(TexturePixels pixels, WrapMode wrap_s, WrapMode wrap_t, FilterMode filter)
-      : pixels_(std::move(pixels)), wrap_s_(wrap_s), wrap_t_(wrap_t), filter_(filter) {}
+  /// `has_mips`: it may be read from smaller copies of itself where RenderSettings::texture_filter asks for
+  /// it (glTF 2.0, sampler.minFilter).
+  Texture(TexturePixels pixels, WrapMode wrap_s, WrapMode wrap_t, FilterMode filter, bool has_mips = true)
+      : pixels_(std::move(pixels)), wrap_s_(wrap_s), wrap_t_(wrap_t), filter_(filter), has_mips_(has_mips) {}
 
   /// RGBA in [0,1]; missing channels: grey is repeated to RGB, alpha is 1. With `srgb`, RGB texels are
   /// decoded to linear light before filtering; alpha never is. Not finite coordinates read as 0.
@@ -43,11 +45,13 @@ class VERNIER_API Texture {
   WrapMode wrap_s() const { return wrap_s_; }
   WrapMode wrap_t() const { return wrap_t_; }
   FilterMode filter() const { return filter_; }
+  bool has_mips() const { return has_mips_; }
 
  private:
   TexturePixels pixels_;
   WrapMode wrap_s_, wrap_t_;
   FilterMode filter_;
+  bool has_mips_;
 };
 
 }  // namespace vernier

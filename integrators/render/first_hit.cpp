@@ -16,8 +16,10 @@ FirstHits::FirstHits(const Scene& scene, const Camera& camera, const RenderSetti
       camera_samples_(camera, scene, options) {}
 
 FirstHits::Met FirstHits::sample(int x, int y, int half, uint32_t i) const {
-  const auto [sampler, ray] = camera_samples_.get({options_.crop.x + x, options_.crop.y + y, half, i});
-  return {ray, sampler, intersect_from_camera(scene_, camera_segment(scene_, ray))};
+  const auto [sampler, ray, cone] = camera_samples_.get({options_.crop.x + x, options_.crop.y + y, half, i});
+  Met met{ray, sampler, intersect_from_camera(scene_, camera_segment(scene_, ray))};
+  if (met.hit) met.hit->footprint = cone.width_at(met.hit->t);
+  return met;
 }
 
 FirstHitMean FirstHits::mean(int x, int y) const {

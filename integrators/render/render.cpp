@@ -249,8 +249,8 @@ class Renderer {
     CameraSample sample = camera_samples_.get({full_x, full_y, half, index});
     std::optional<LightParts> parts;
     if (sorter_) parts.emplace();
-    const SampleContext context{spread(x, y, half), sorter_, parts ? &*parts : nullptr, chains_,
-                                small_lamps_};
+    const SampleContext context{spread(x, y, half), sorter_,    parts ? &*parts : nullptr, chains_,
+                                small_lamps_,       sample.cone};
     const Estimate estimate = integrator_.estimate(scene_, sample.ray, sample.sampler, context);
     ++totals.samples;
     totals.rays += estimate.rays;

@@ -16,6 +16,7 @@
 #include "integrators/render/layers.h"
 #include "integrators/render/picture.h"
 #include "integrators/render/pixel_filter.h"
+#include "integrators/render/texture_filter.h"
 #include "scene/camera.h"
 #include "scene/moving_mesh.h"
 #include "scene/scene.h"
@@ -50,6 +51,7 @@ void check(const Scene* scene, const RenderSettings& settings) {
   if (!(camera.focus_distance > 0))
     refuse(fmt::format("a focus distance of {} m; expected more than 0", camera.focus_distance));
   check_filter(settings.filter);
+  check_texture_filter(settings);
   const bool splits = !settings.light_split.ways.empty() || !settings.light_split.groups.empty();
   if (splits && !find_by_name(integrators(), "integrator", settings.integrator).splits_light)
     refuse(fmt::format("the integrator {} does not keep parts of the light apart; path does",

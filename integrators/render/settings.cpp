@@ -12,6 +12,7 @@
 #include "core/base/names.h"
 #include "integrators/render/pixel_filter.h"
 #include "integrators/render/settings_identity.h"
+#include "integrators/render/texture_filter.h"
 
 namespace vernier {
 namespace {
@@ -47,6 +48,7 @@ void for_each_setting(Settings& s, const Visit& visit) {
   visit("size", s.width, s.height);
   visit("crop", s.crop);
   visit("filter", s.filter);
+  visit("texture-filter", s.texture_filter);
   visit("integrator", s.integrator);
   visit("max-depth", options.max_depth);
   visit("light-sampling", options.light_sampling);
@@ -72,6 +74,7 @@ Json name_of(const Names& names, Value value) {
 Json encode(LightSampling value) { return name_of(light_samplings, value); }
 Json encode(Caustics value) { return name_of(caustics_names, value); }
 Json encode(const PixelFilter& filter) { return filter_text(filter); }
+Json encode(const TextureFilter& filter) { return texture_filter_text(filter); }
 Json encode(const Crop& crop) {
   return crop.width > 0 ? Json{crop.x, crop.y, crop.width, crop.height} : Json(nullptr);
 }
@@ -123,6 +126,9 @@ void decode(const Json& json, LightSampling& value) {
 }
 void decode(const Json& json, Caustics& value) { decode_name(json, "caustics", caustics_names, value); }
 void decode(const Json& json, PixelFilter& filter) { filter = parse_filter(json.get<std::string>()); }
+void decode(const Json& json, TextureFilter& filter) {
+  filter = parse_texture_filter(json.get<std::string>());
+}
 void decode(const Json& json, Crop& crop) {
   crop = {};
   if (json.is_null()) return;
@@ -167,6 +173,7 @@ void decode(const Json& json, T& value) {
 std::string text(bool value) { return value ? "on" : "off"; }
 std::string text(const std::string& value) { return value; }
 std::string text(const PixelFilter& filter) { return filter_text(filter); }
+std::string text(const TextureFilter& filter) { return texture_filter_text(filter); }
 std::string text(LightSampling value) { return encode(value).get<std::string>(); }
 std::string text(Caustics value) { return encode(value).get<std::string>(); }
 std::string text(const CameraDescription& camera) {

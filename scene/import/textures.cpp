@@ -83,10 +83,13 @@ WrapMode wrap_mode(int gltf) {
 Texture make_texture(const Document& document, const tinygltf::Texture& source, TexturePixels pixels) {
   if (source.sampler < 0) return {std::move(pixels), WrapMode::repeat, WrapMode::repeat, FilterMode::linear};
   const auto& sampler = document.model().samplers[size_t(source.sampler)];
-  // Magnification decides: minification is what the many samples of a pixel do.
+  // Magnification decides: minification is what the many samples of a pixel do, and mipmaps if they are asked
+  // for. Of these a file may say that it wants none.
   const bool nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+  const bool has_mips = sampler.minFilter != TINYGLTF_TEXTURE_FILTER_NEAREST &&
+                        sampler.minFilter != TINYGLTF_TEXTURE_FILTER_LINEAR;
   return {std::move(pixels), wrap_mode(sampler.wrapS), wrap_mode(sampler.wrapT),
-          nearest ? FilterMode::nearest : FilterMode::linear};
+          nearest ? FilterMode::nearest : FilterMode::linear, has_mips};
 }
 
 /// What a texture is read from.

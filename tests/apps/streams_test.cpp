@@ -74,12 +74,20 @@ TEST_F(Streams, DraftIsFewSamplesAndADenoiser) {
   Metadata header = read_layers(folder_.file("a.exr")).metadata;
   EXPECT_EQ(header["vernier:samplesPerPixel"], "8");
   EXPECT_EQ(header["vernier:denoiser"], "nlm");
-  const ProcessResult more = run_vernier({"render", cornell_box, "--draft", "--spp", "3", "--denoise",
-                                          "bilateral", "--size", "16x16", "-o", folder_.file("b.exr")});
+  EXPECT_EQ(header["vernier:textureFilter"], "mip:1 (approximated)");
+  const ProcessResult more =
+      run_vernier({"render", cornell_box, "--draft", "--spp", "3", "--denoise", "bilateral",
+                   "--texture-filter", "none", "--size", "16x16", "-o", folder_.file("b.exr")});
   EXPECT_EQ(more.exit_code, 0) << more.err;
   header = read_layers(folder_.file("b.exr")).metadata;
   EXPECT_EQ(header["vernier:samplesPerPixel"], "3");
   EXPECT_EQ(header["vernier:denoiser"], "bilateral");
+  EXPECT_FALSE(header.contains("vernier:textureFilter"));
+  for (const char* exact : {"--strict", "--integrator=light"})
+    EXPECT_EQ(
+        run_vernier({"render", cornell_box, "--draft", exact, "--size", "8x8", "-o", folder_.file("c.exr")})
+            .exit_code,
+        0);
 }
 
 TEST_F(Streams, PartialPicturesChangeNothingInTheEnd) {

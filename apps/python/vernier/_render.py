@@ -57,6 +57,9 @@ class Settings(TypedDict, total=False):
     """"embree" or "bvh" ("embree")."""
     filter: str
     """"box", "gaussian" or "blackman-harris", with ":WIDTH" in pixels if it is not to be the usual one ("box")."""
+    texture_filter: str
+    """Colours of textures: "none", read at points, or "mip", averaged over what a sample stands for, with ":WIDTH" in
+    pixels if it is not to be 1: less noise, approximated ("none")."""
     crop: tuple[int, int, int, int] | None
     """x, y, width and height of the part of the picture that is rendered (None: all)."""
     row_exposure: float
@@ -129,6 +132,7 @@ def _request(scene: Scene, given: Settings) -> Request:
     settings["max-depth"] = _whole(given.get("max_depth", settings["max-depth"]), "max_depth", 1)
     for name in ("filter", "integrator", "caustics", "show"):
         settings[name] = str(given.get(name, settings[name]))
+    settings["texture-filter"] = str(given.get("texture_filter", settings["texture-filter"]))
     for name in ("ambient", "cutoff"):
         settings[name] = float(given.get(name, settings[name]))  # type: ignore[arg-type]
     settings["row-exposure"] = float(given.get("row_exposure", 1.0))
