@@ -6,7 +6,6 @@
 
 #include "apps/bench/bench.h"
 #include "apps/bench/calibration.h"
-#include "apps/vernier/choose_camera.h"
 #include "apps/vernier/flags.h"
 #include "core/base/atomic_file.h"
 #include "core/base/names.h"
@@ -72,19 +71,8 @@ ExitCode run_bench_calibration(const CalibrationFlags& flags, const Program& pro
                                               fewest_runs_without_reference));
   std::optional<Reference> given;
   if (!flags.reference.empty()) given = read_reference_with_error(flags.reference);
-  NoticeLog log(false);
-  SceneDescription description = import_scene(flags.render.scene, flags.render.import);
-  const auto surroundings = read_surroundings(flags.render.surroundings);
-  replace_surroundings(description, surroundings, log);
-  log.add(description.notices);
-  const auto chosen = choose_camera(description.cameras, flags.render.camera, log);
-  Scene scene(std::move(description), {});
-  const CameraDescription view =
-      place_camera(chosen, flags.render.camera, scene.geometry(),
-                   bench_aspect(flags.render, given ? &given->picture : nullptr), log);
-  RenderSettings options = bench_options(flags.render, view, given ? &given->picture : nullptr);
-  set_environment(scene, surroundings, view, options, log);
-  log.add(scene.notices());
+  auto [read, view, options] = read_bench_scene(flags.render, given ? &given->picture : nullptr);
+  const Scene& scene = *read;
   options.limits.spp = flags.spp;
   if (!flags.render.error.empty()) {
     options.limits.spp = 0;
@@ -134,6 +122,7 @@ void register_bench_calibration(CLI::App& bench, Program& program) {
                    "evenly sampled, with the layer error (the mean of the other seeds)")
       ->type_name("FILE");
   add_measured_picture_flags(*command, flags->render);
+  add_adaptive_flag(*command, flags->render);
   command->add_option("--json", flags->json, "write the figures as JSON")->type_name("FILE");
   command->callback([&program, flags] {
     program.run = [&program, flags] { return run_bench_calibration(*flags, program); };

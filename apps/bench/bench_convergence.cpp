@@ -174,6 +174,7 @@ void register_bench_convergence(CLI::App& bench, Program& program) {
   add_plan_flags(*command, *flags);
   command->add_option("--out", flags->out, "folder for convergence.csv, .json and .html")->type_name("DIR");
   add_measured_picture_flags(*command, render);
+  add_adaptive_flag(*command, render);
   command->callback([&program, flags] {
     program.run = [&program, flags] { return run_bench_convergence(*flags, program); };
   });

@@ -5,16 +5,12 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <optional>
 
 #include "apps/bench/bench.h"
 #include "apps/bench/bench_reference.h"
 #include "apps/bench/query_meter.h"
-#include "apps/vernier/choose_camera.h"
 #include "apps/vernier/flags.h"
 #include "apps/vernier/machine.h"
-#include "apps/vernier/notice_log.h"
-#include "apps/vernier/surroundings.h"
 #include "core/base/atomic_file.h"
 #include "core/base/names.h"
 #include "core/compare/metrics.h"
@@ -211,21 +207,12 @@ Json profile(Scene& scene, const Camera& camera, const RenderSettings& settings)
 ExitCode run_bench_profile(const ProfileFlags& flags, const Program& program) {
   require_scene(flags.render.scene, "bench profile");
   if (!flags.json.empty()) check_writable(flags.json);
-  NoticeLog log(false);
-  SceneDescription description = import_scene(flags.render.scene, flags.render.import);
-  const auto surroundings = read_surroundings(flags.render.surroundings);
-  replace_surroundings(description, surroundings, log);
-  log.add(description.notices);
-  const auto chosen = choose_camera(description.cameras, flags.render.camera, log);
-  Scene scene(std::move(description), {flags.render.accelerator});
-  const CameraDescription view =
-      place_camera(chosen, flags.render.camera, scene.geometry(), bench_aspect(flags.render, nullptr), log);
-  RenderSettings settings = bench_options(flags.render, view, nullptr);
-  set_environment(scene, surroundings, view, settings, log);
-  log.add(scene.notices());
+  if (!flags.render.accelerator.empty())
+    find_by_name(accelerators(), "accelerator", flags.render.accelerator);
+  auto [read, view, settings] = read_bench_scene(flags.render, nullptr);
+  Scene& scene = *read;
   settings.adaptive = false;
   settings.limits.spp = flags.spp;
-  settings.integrator = flags.render.integrator;
   settings.integrator_options = flags.render.integrator_options;
   const Camera camera(view, settings.width, settings.height);
 
@@ -253,6 +240,8 @@ void register_bench_profile(CLI::App& bench, Program& program) {
       ->transform(whole_number(2, 1 << 20))
       ->type_name("N")
       ->capture_default_str();
+  command->add_option("--accelerator", flags->render.accelerator, "that answers the rays (embree)")
+      ->type_name("NAME");
   add_measured_picture_flags(*command, flags->render);
   command->add_option("--json", flags->json, "write the figures as JSON")->type_name("FILE");
   command->callback(

@@ -8,10 +8,11 @@
 
 #include "apps/vernier/choose_camera.h"
 #include "apps/vernier/flags.h"
+#include "apps/vernier/notice_log.h"
+#include "apps/vernier/surroundings.h"
 #include "core/base/names.h"
 #include "core/image/image_io.h"
 #include "scene/camera.h"
-#include "scene/scene.h"
 #include "vernier/error.h"
 
 namespace vernier::apps {
@@ -92,12 +93,27 @@ RenderSettings bench_options(const RenderFlags& flags, const CameraDescription& 
   return options;
 }
 
+BenchScene read_bench_scene(const RenderFlags& flags, const Image* reference) {
+  NoticeLog log(false);
+  SceneDescription description = import_scene(flags.scene, flags.import);
+  const auto surroundings = read_surroundings(flags.surroundings);
+  replace_surroundings(description, surroundings, log);
+  log.add(description.notices);
+  const auto chosen = choose_camera(description.cameras, flags.camera, log);
+  BenchScene read;
+  read.scene = std::make_unique<Scene>(std::move(description), SceneOptions{flags.accelerator});
+  read.view = place_camera(chosen, flags.camera, read.scene->geometry(), bench_aspect(flags, reference), log);
+  read.options = bench_options(flags, read.view, reference);
+  set_environment(*read.scene, surroundings, read.view, read.options, log);
+  log.add(read.scene->notices());
+  return read;
+}
+
 void add_measured_picture_flags(CLI::App& command, RenderFlags& flags) {
   command.add_option("--size", flags.size, "of the picture (the reference's, else 256 pixels long)")
       ->check(parsed_by(parse_pixel_size))
       ->type_name("WxH");
   add_camera_flags(command, flags.camera);
-  add_adaptive_flag(command, flags);
   add_max_depth_flag(command, flags);
   add_surroundings_flags(command, flags.surroundings);
 }

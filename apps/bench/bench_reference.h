@@ -2,10 +2,12 @@
 #pragma once
 
 #include <atomic>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "apps/vernier/render_options.h"
+#include "scene/scene.h"
 #include "vernier/image.h"
 
 // What benches that measure error compare with.
@@ -37,7 +39,17 @@ float bench_aspect(const RenderFlags& flags, const Image* reference);
 /// Size as asked for, else that of `reference` (may be null), else small.
 RenderSettings bench_options(const RenderFlags& flags, const CameraDescription& view, const Image* reference);
 
-/// Flags that say how the scene is seen: size, camera, adaptive sampling, depth, surroundings.
+/// A scene in its surroundings, and how a bench renders it.
+struct BenchScene {
+  std::unique_ptr<Scene> scene;
+  CameraDescription view;
+  RenderSettings options;
+};
+/// Reads one as the flags say, of the size of `reference` (may be null) unless they say one. Says on standard
+/// error what is worth saying. Throws Error.
+BenchScene read_bench_scene(const RenderFlags& flags, const Image* reference);
+
+/// Flags that say how the scene is seen: size, camera, depth, surroundings.
 void add_measured_picture_flags(CLI::App& command, RenderFlags& flags);
 
 }  // namespace vernier::apps

@@ -88,6 +88,15 @@ TEST(BenchProfile, TellsWhereTimeAndVarianceGo) {
   EXPECT_GT(depth[4]["relative_variance_trim"], 4 * depth[1]["relative_variance_trim"].get<double>());
   EXPECT_NEAR(sum_of(report["materials"], "pixels"), 1, 1e-9);
   EXPECT_NEAR(sum_of(report["materials"], "share"), 1, 1e-9);
+  const auto own = test::run_vernier({"bench", "profile", cornell_box, "--size", "48x48", "--spp", "8",
+                                      "--max-depth", "5", "--accelerator", "bvh", "--json", file});
+  ASSERT_EQ(own.exit_code, done) << own.err;
+  const auto of_bvh = json::parse(test::read_file(file));
+  EXPECT_EQ(of_bvh["accelerator"], "bvh");
+  EXPECT_NEAR(of_bvh["time"][0]["a_sample"], time[0]["a_sample"].get<double>(), 0.01);
+  const auto unknown = test::run_vernier({"bench", "profile", cornell_box, "--accelerator", "bhv"});
+  EXPECT_EQ(unknown.exit_code, usage);
+  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'bvh'"));
 }
 
 TEST(BenchScale, TellsWhatBuildingAndRenderingCostAsScenesGrow) {
