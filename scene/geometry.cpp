@@ -202,7 +202,8 @@ SurfacePoint SceneGeometry::surface_point(uint32_t instance, uint32_t primitive,
     point.error =
         m.absolute_point(point.error, 0) + m.absolute_point(abs(point.position), 1) * (2 * gamma_bound(4));
     point.position = m.point(point.position);
-    point.ng = placed.normal_inverse.transposed_vector(point.ng) * placed.orientation;
+    // On an inverse this keeps the side, also where the map mirrors and with that turns the winding.
+    point.ng = placed.normal_inverse.transposed_vector(point.ng);
   }
   point.ng = unit_or(point.ng, {0, 0, 1});
   return point;
