@@ -35,11 +35,25 @@ uint64_t light_paths(const RenderResult& result) {
   return std::accumulate(halves.begin(), halves.end(), uint64_t{0});
 }
 
+/// Where the picture was taken from, as the flags of the command line take it.
+Json view_json(const CameraDescription& camera) {
+  const auto numbers = [](const Vec3f& v) { return Json{v.x, v.y, v.z}; };
+  const Vec3f &from = camera.to_world.origin, ahead = -normalize(camera.to_world.z);
+  // Far from the origin, a point that is nearer would be told too coarsely for the direction to it.
+  Json view = {{"from", numbers(from)},
+               {"at", numbers(from + ahead * std::max(1.0f, length(from)))},
+               {"up", numbers(normalize(camera.to_world.y))}};
+  if (camera.kind == CameraDescription::Kind::perspective) view["fov"] = camera.yfov * 180 / pi;
+  if (camera.kind == CameraDescription::Kind::orthographic) view["ortho"] = 2 * camera.ymag;
+  return view;
+}
+
 Json picture_json(const RenderReport& report, const RenderFlags& flags, const RenderResult& result) {
   Json picture = {{"width", report.settings.width},
                   {"height", report.settings.height},
                   {"integrator", flags.integrator},
                   {"camera", report.camera},
+                  {"view", view_json(report.settings.camera)},
                   {"surroundings", report.surroundings.name},
                   {"filter", filter_text(report.settings.filter)},
                   {"texture_filter", texture_filter_text(report.settings.texture_filter)},

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
 
 #include "core/image/image_io.h"
 #include "tests/support/process.h"
@@ -117,6 +121,30 @@ TEST(CameraFlags, RollTurnsAnyCamera) {
   EXPECT_NEAR(rolled.width(), 0.84, 2 * pixel);
   EXPECT_NEAR(rolled.height(), 0.84 * 1.5 / 2, 2 * pixel);
   EXPECT_GT(seen({"--roll", "45", "--zoom", "8"}).height(), 0.1);
+}
+
+TEST(CameraFlags, StatsTellTheViewAsFlagsThatShowTheSameAgain) {
+  for (const std::vector<std::string>& flags : {std::vector<std::string>{},
+                                                {"--azimuth", "20", "--elevation", "50"},
+                                                {"--roll", "30", "--fov", "20"},
+                                                {"--azimuth", "-40", "--ortho"}}) {
+    const test::TemporaryFolder folder;
+    std::vector<std::string> fitted{"--azimuth=25", "--stats", folder.file("stats.json")};
+    if (!flags.empty()) fitted.erase(fitted.begin());
+    fitted.insert(fitted.end(), flags.begin(), flags.end());
+    const Seen asked = seen(fitted);
+    const auto view = nlohmann::json::parse(test::read_file(folder.file("stats.json")))["picture"]["view"];
+    std::vector<std::string> again;
+    for (const auto& [flag, key] :
+         {std::pair("--look-from=", "from"), std::pair("--look-at=", "at"), std::pair("--up=", "up")})
+      again.push_back(fmt::format("{}{}", flag, fmt::join(view[key].get<std::vector<double>>(), ",")));
+    const std::string lens = view.contains("ortho") ? "ortho" : "fov";
+    again.push_back(fmt::format("--{}={}", lens, view[lens].get<double>()));
+    const Seen shown = seen(again);
+    for (const auto& [a, b] : {std::pair(asked.left, shown.left), std::pair(asked.right, shown.right),
+                               std::pair(asked.top, shown.top), std::pair(asked.bottom, shown.bottom)})
+      EXPECT_NEAR(a, b, pixel / 2) << fmt::format("{}", fmt::join(again, " "));
+  }
 }
 
 TEST(CameraFlags, ContradictionsAreRefusedInOneLine) {
