@@ -83,7 +83,8 @@ CameraDescription fit_camera(CameraDescription camera, const FarthestPoint& fart
   const double size = std::max({depth.size(), width.size(), height.size(), 1e-6});
   const double far_off =
       std::max({std::abs(depth.upper), std::abs(width.middle()), std::abs(height.middle())});
-  const double nearest = depth.upper + std::max(0.01 * size, 1e-5 * far_off);
+  // Far from the origin it cannot be placed closer than by a few steps of single precision.
+  const double nearest = depth.upper + std::max(0.01 * size, 1e-6 * far_off);
   const double filled = 1 - 2.0 * margin;
   double x = width.middle(), y = height.middle(), z = nearest + size;
   if (camera.kind == CameraDescription::Kind::orthographic) {

@@ -13,6 +13,9 @@ namespace {
 
 /// An instance so many times as large as the subject may be its setting.
 constexpr float setting_ratio = 10;
+/// Radius of what is less than a pixel in a picture of all, and of what is next to nothing in it, over that
+/// of all.
+constexpr float invisible_ratio = 1e-3f, lost_ratio = 0.05f;
 /// Least over middle extent of what counts as flat. A board that stands upright may be thicker: its face is
 /// what it is for, while a thing that lies is seen well from above the ground, but for a sheet.
 constexpr float flat_enough = 0.02f, flat_enough_upright = 0.15f;
@@ -109,9 +112,15 @@ bool is_inside_out(const SceneGeometry& geometry, uint32_t instance, const Vec3f
 
 Subject::Subject(const SceneGeometry& geometry) : geometry_(geometry) {
   for (uint32_t i = 0; i < geometry.instance_count(); ++i)
-    if (const Bounds& bounds = geometry.middle_bounds(i); !bounds.empty()) parts_.push_back({i, bounds});
+    if (const Bounds& bounds = geometry.middle_bounds(i); bounds.radius() > 0) parts_.push_back({i, bounds});
   std::stable_sort(parts_.begin(), parts_.end(),
                    [](const Part& a, const Part& b) { return a.bounds.radius() < b.bounds.radius(); });
+  leave_out_setting();
+  leave_out_strays();
+  for (const Part& part : parts_) bounds_.add(part.bounds);
+}
+
+void Subject::leave_out_setting() {
   std::vector<Bounds> up_to(parts_.size());
   for (size_t i = 0; i < parts_.size(); ++i) {
     if (i > 0) up_to[i] = up_to[i - 1];
@@ -123,12 +132,28 @@ Subject::Subject(const SceneGeometry& geometry) : geometry_(geometry) {
   for (size_t i = parts_.size(); i-- > 1;) {
     const Bounds &part = parts_[i].bounds, &rest = up_to[i - 1];
     if (part.radius() < setting_ratio * parts_[0].bounds.radius()) break;
-    if (!is_flat(part) && !is_inside_out(geometry, parts_[i].instance, rest.center())) break;
+    if (!is_flat(part) && !is_inside_out(geometry_, parts_[i].instance, rest.center())) break;
     if (rest.radius() > 0 && part.radius() >= setting_ratio * rest.radius()) kept = i;
   }
   left_out_ = parts_.size() - kept;
   parts_.resize(kept);
-  if (kept > 0) bounds_ = up_to[kept - 1];
+}
+
+void Subject::leave_out_strays() {
+  Bounds all, large;
+  for (const Part& part : parts_) all.add(part.bounds);
+  const auto is_small = [&](const Part& part) {
+    return part.bounds.radius() < invisible_ratio * all.radius();
+  };
+  for (const Part& part : parts_)
+    if (!is_small(part)) large.add(part.bounds);
+  if (large.empty() || large.radius() >= lost_ratio * all.radius()) return;
+  // Small parts of what is large, or near it, belong to it.
+  const size_t before = parts_.size();
+  std::erase_if(parts_, [&](const Part& part) {
+    return is_small(part) && length(part.bounds.center() - large.center()) > 2 * large.radius();
+  });
+  strays_ = before - parts_.size();
 }
 
 Bounds Subject::bounds_to_see() const {

@@ -22,17 +22,20 @@ struct NormalSums {
   }
 };
 
-/// What a picture of a scene is of: its instances but for their setting, in a view of which they would be
-/// lost. Setting is what is flat (the ground, a backdrop) or seen from inside (the dome of a sky), and ten
-/// times as large as the subject.
+/// What a picture of a scene is of: its instances but for their setting and for strays, in a view of which
+/// they would be lost. Setting is what is flat (the ground, a backdrop) or seen from inside (the dome of a
+/// sky), and ten times as large as the subject. Strays, such as a triangle that a program forgot, are too
+/// small for a view of all, which would show the others twenty times as small as they can be seen. What a
+/// transform makes a point of, as programs hide things, is not there.
 class Subject {
  public:
   /// The geometry must live as long.
   explicit Subject(const SceneGeometry& geometry);
 
   bool empty() const { return parts_.empty(); }
-  /// Instances that were left out as setting.
+  /// Instances that were left out as setting, and as strays.
   size_t left_out() const { return left_out_; }
+  size_t strays() const { return strays_; }
   /// Of the triangles' corners, in the world.
   const Bounds& bounds() const { return bounds_; }
   /// The same; some place about the origin when there is nothing to see.
@@ -57,11 +60,13 @@ class Subject {
     Bounds bounds;
   };
 
+  void leave_out_setting();
+  void leave_out_strays();
   NormalSums normal_sums() const;
 
   const SceneGeometry& geometry_;
   std::vector<Part> parts_;
-  size_t left_out_ = 0;
+  size_t left_out_ = 0, strays_ = 0;
   Bounds bounds_;
 };
 

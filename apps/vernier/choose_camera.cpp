@@ -125,6 +125,12 @@ void note_fitting(const CameraFlags& flags, const Subject& subject, NoticeLog& l
              fmt::format("the camera is fitted without {} far larger {}; --look-from and --look-at see more",
                          subject.left_out() - grounds,
                          subject.left_out() - grounds == 1 ? "object" : "objects")});
+  if (subject.strays() > 0)
+    log.add(
+        {Notice::Severity::info,
+         {},
+         fmt::format("the camera is fitted without {} small and far away; --look-from and --look-at see more",
+                     subject.strays() == 1 ? "an object that is" : "objects that are")});
 }
 
 }  // namespace

@@ -88,6 +88,21 @@ TEST(Framing, TheCameraIsMovedButNotTurned) {
   EXPECT_NEAR(length(after.to_world.z - before.to_world.z), 0, 1e-6);
 }
 
+TEST(Framing, AHouseInSurveyCoordinatesFillsItsPicture) {
+  // Five thousand kilometres out, single precision has steps of half a metre.
+  const Vec3f place(512345, 120, -5412345);
+  std::vector<Vec3f> points;
+  for (int i = 0; i < 8; ++i)
+    points.push_back(place + Vec3f(i & 1 ? 12.f : 0.f, i & 2 ? 6.f : 0.f, i & 4 ? 8.f : 0.f));
+  Random random(3);
+  for (int trial = 0; trial < 20; ++trial) {
+    const auto camera =
+        fit_camera(looking(random, CameraDescription::Kind::perspective), farthest_of(points), 1.5f, 0.08f);
+    const Room room = room_around(points, camera, 1.5f);
+    EXPECT_NEAR(std::min({room.left, room.right, room.top, room.bottom}), 0.08f, 0.04f) << trial;
+  }
+}
+
 TEST(Framing, APointAndALineSeenEndOnLieBeforeTheCamera) {
   for (const auto kind : {CameraDescription::Kind::perspective, CameraDescription::Kind::orthographic})
     for (const float length : {0.f, 3.f}) {

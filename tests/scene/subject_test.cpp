@@ -46,6 +46,40 @@ TEST(Subject, ABodyWithSmallPartsAndAFloorOfItsSizeAreSeenWhole) {
   EXPECT_NEAR(subject.bounds().upper.x, 3, 1e-6);
 }
 
+TEST(Subject, WhatIsTooFarAndSmallToBeSeenIsAStray) {
+  SceneBuilder builder;
+  builder.add(cube({0, 0.5f, 0}, 1), diffuse(0.5f)).add(cube({0.6f, 0.5f, 0}, 0.01f), diffuse(0.5f));
+  builder.add(cube({300, 40, -500}, 0.01f), diffuse(0.5f));
+  const Scene scene = builder.build();
+  const Subject subject(scene.geometry());
+  EXPECT_EQ(subject.strays(), 1u);
+  EXPECT_EQ(subject.left_out(), 0u);
+  EXPECT_NEAR(subject.bounds().upper.x, 0.605f, 1e-6) << "a small part near the body is one of its own";
+}
+
+TEST(Subject, NothingIsStrayThatIsSeenOrLeavesTheRestAsItIs) {
+  // A house in the distance is seen beside a cube; of a cloud of grains none is more than the others; and
+  // without the screw the cubes would be no larger.
+  SceneBuilder house, cloud, far_cubes;
+  house.add(cube({0, 0, 0}, 1), diffuse(0.5f)).add(cube({200, 0, 0}, 1), diffuse(0.5f));
+  far_cubes.add(cube({0, 0, 0}, 1), diffuse(0.5f)).add(cube({100, 0, 0}, 1), diffuse(0.5f));
+  far_cubes.add(cube({100, 60, 0}, 0.01f), diffuse(0.5f));
+  for (int i = 0; i < 20; ++i) cloud.add(cube({float(i), float(i * i % 7), 0}, 1e-3f), diffuse(0.5f));
+  for (SceneBuilder* builder : {&house, &cloud, &far_cubes})
+    EXPECT_EQ(Subject(builder->build().geometry()).strays(), 0u);
+}
+
+TEST(Subject, WhatIsMadeAPointOfIsNotThere) {
+  Transform hidden;
+  hidden.x = hidden.y = hidden.z = {0, 0, 0};
+  hidden.origin = {7, 0, 0};
+  const Scene scene = SceneBuilder()
+                          .add(cube({0, 0, 0}, 1), diffuse(0.5f))
+                          .add(cube({0, 0, 0}, 1), diffuse(0.5f), hidden)
+                          .build();
+  EXPECT_NEAR(Subject(scene.geometry()).farthest({1, 0, 0}).x, 0.5f, 1e-6);
+}
+
 TEST(Subject, ABodyIsNoSettingToItsSmallestPart) {
   SceneBuilder builder;
   builder.add(sphere({0, 0, 0}, 2, 8, 8), diffuse(0.5f)).add(cube({0, 0, 2}, 0.01f), emitter(1));
