@@ -135,6 +135,15 @@ struct Part {
   std::vector<int> channels;
 };
 
+/// Blender (3.4) takes no channel without a dot but R, G, B, A and Z. It reads a part that has nothing else
+/// as a failure, and leaves black what follows.
+bool is_left_by_blender(const Part& part, const std::vector<std::string>& channel_names) {
+  return std::none_of(part.channels.begin(), part.channels.end(), [&](int c) {
+    const std::string& channel = channel_names[size_t(c)];
+    return is_color_or_alpha(channel) || channel == "Z" || channel.find('.') != std::string::npos;
+  });
+}
+
 std::vector<Part> parts_of(const std::vector<std::string>& channel_names) {
   std::vector<Part> parts;
   for (size_t c = 0; c < channel_names.size(); ++c) {
@@ -147,6 +156,8 @@ std::vector<Part> parts_of(const std::vector<std::string>& channel_names) {
     else
       parts.push_back({name, {int(c)}});
   }
+  std::stable_partition(parts.begin(), parts.end(),
+                        [&](const Part& part) { return !is_left_by_blender(part, channel_names); });
   return parts;
 }
 
