@@ -63,7 +63,10 @@ void warn_if_black(double mean, const RenderFlags& flags, const RenderReport& re
   constexpr double black = 0.005, gray = 0.18;
   if (mean * std::exp2(flags.display.exposure) >= black) return;
   std::vector<std::string> remedies;
-  if (report.surroundings.name != "studio") remedies.emplace_back("--env studio lights it");
+  if (report.surroundings.name != "studio")
+    remedies.emplace_back("--env studio lights it");
+  else
+    remedies.emplace_back("the studio lights nothing of it: what is shut in needs a lamp of its own");
   if (mean > 0)
     remedies.push_back(
         fmt::format("--exposure {:.0f} brightens a .png or .jpg", std::ceil(std::log2(gray / mean))));
@@ -71,6 +74,18 @@ void warn_if_black(double mean, const RenderFlags& flags, const RenderReport& re
            {},
            fmt::format("the picture is almost all black, its mean luminance {:.2g}{}{}", mean,
                        remedies.empty() ? "" : "; ", fmt::join(remedies, ", "))});
+}
+
+/// Says so when most of what is lit comes out white, as by lamps whose candelas or lux are true to life.
+void warn_if_white(double typical, const RenderFlags& flags, NoticeLog& log) {
+  constexpr double white = 8, gray = 0.18;
+  if (typical * std::exp2(flags.display.exposure) < white) return;
+  log.add({Notice::Severity::warning,
+           {},
+           fmt::format(
+               "most of what is lit comes out white, its luminance about {:.2g}; --exposure {:.0f} darkens "
+               "a .png or .jpg",
+               typical, std::round(std::log2(gray / typical)))});
 }
 
 }  // namespace
@@ -85,7 +100,9 @@ void warn_of_result(const RenderResult& result, const Scene& scene, const Render
   if (!shows_light(flags)) return;
   const RenderSettings& settings = report.settings;
   const Camera camera(settings.camera, settings.width, settings.height);
-  warn_if_black(covered_luminance(result.film, scene, camera, settings), flags, report, log);
+  const PictureLight light = picture_light(result.film, scene, camera, settings);
+  warn_if_black(light.mean, flags, report, log);
+  warn_if_white(light.typical, flags, log);
 }
 
 }  // namespace vernier::apps

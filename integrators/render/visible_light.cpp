@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrators/render/visible_light.h"
 
+#include <algorithm>
+#include <array>
 #include <vector>
 
 #include "core/base/names.h"
@@ -18,8 +20,11 @@ constexpr int grid = 24;              // pixels a side
 constexpr int samples_per_pixel = 8;  // a power of two, for stratification
 constexpr uint64_t seed = 0;
 constexpr uint64_t light_paths_per_pixel = 16;  // the same
+constexpr int light_path_block = 4;             // pixels a side, over which they are averaged
 /// Of the radiance that a white environment of radiance 1 would make visible.
 constexpr float faint = 0.01f;
+/// Of a picture's mean luminance: what is darker is not lit.
+constexpr double in_the_dark = 1e-3;
 
 /// Sums over a pixel's samples that meet a surface.
 struct PixelLight {
@@ -39,7 +44,8 @@ void look(const Scene& scene, const Integrator& integrator, const Ray& ray, Samp
   pixel.albedo += luminance(shade(scene, *hit, -ray.direction).albedo());
 }
 
-/// What light paths bring, if the integrator follows any, in the mean over each pixel of the grid.
+/// What light paths bring, if the integrator follows any, in the mean over the pixels of the grid around
+/// each: they are too few for every pixel that they light to meet one.
 std::vector<Rgb> light_of_paths(const Scene& scene, const Camera& camera, const Integrator& integrator,
                                 int width, int height) {
   RenderSettings settings;
@@ -53,8 +59,15 @@ std::vector<Rgb> light_of_paths(const Scene& scene, const Camera& camera, const 
   Caught caught;
   for (uint64_t i = 0; i < count; ++i) paths.trace({i, 0}, caught);
   const float share = float(grid) / float(width) * float(grid) / float(height) / float(count);
+  constexpr int blocks = grid / light_path_block;
+  std::array<Rgb, size_t(blocks) * blocks> means{};
+  means.fill(Rgb(0, 0, 0));
   for (const auto& [x, y, radiance, is_beyond] : caught.splats)
-    if (!is_beyond) pixels[size_t(y * grid / height) * grid + size_t(x * grid / width)] += radiance * share;
+    if (!is_beyond)
+      means[size_t(y * blocks / height) * blocks + size_t(x * blocks / width)] +=
+          radiance * (share / square(float(light_path_block)));
+  for (size_t i = 0; i < pixels.size(); ++i)
+    pixels[i] = means[i / grid / light_path_block * blocks + i % grid / light_path_block];
   return pixels;
 }
 
@@ -85,27 +98,30 @@ VisibleLight visible_light(const Scene& scene, const Camera& camera, int width, 
   return {float(lit) / float(covered), float(shown) / float(covered)};
 }
 
-double covered_luminance(const Film& film, const Scene& scene, const Camera& camera,
-                         const RenderSettings& options) {
+PictureLight picture_light(const Film& film, const Scene& scene, const Camera& camera,
+                           const RenderSettings& options) {
   constexpr int most_a_side = 64;
   const int stride = (std::max(film.width(), film.height()) + most_a_side - 1) / most_a_side;
   const FirstHits first_hits(scene, camera, options, film);
-  double covered_sum = 0, sum = 0;
-  int covered = 0, count = 0;
+  std::vector<double> covered, all;
   for (int y = std::min(stride, film.height()) / 2; y < film.height(); y += stride)
     for (int x = std::min(stride, film.width()) / 2; x < film.width(); x += stride) {
-      const double value = luminance(Rgb(Vec3f(film.pixel(x, y))));
-      sum += value;
-      ++count;
-      if (!first_hits.at_center(x, y)) continue;
-      covered_sum += value;
-      ++covered;
+      all.push_back(luminance(Rgb(Vec3f(film.pixel(x, y)))));
+      if (first_hits.at_center(x, y)) covered.push_back(all.back());
     }
-  if (covered > 0) return covered_sum / covered;
-  return count > 0 ? sum / count : 0;
+  std::vector<double>& looked_at = covered.empty() ? all : covered;
+  if (looked_at.empty()) return {};
+  PictureLight light;
+  for (const double value : looked_at) light.mean += value / double(looked_at.size());
+  std::erase_if(looked_at, [&](double value) { return !(value > in_the_dark * light.mean); });
+  if (looked_at.empty()) return light;
+  const auto middle = looked_at.begin() + std::ptrdiff_t(looked_at.size() / 2);
+  std::nth_element(looked_at.begin(), middle, looked_at.end());
+  light.typical = *middle;
+  return light;
 }
 
-bool is_dark(const VisibleLight& light) { return light.lit < 0.1f && light.shown < 0.5f; }
+bool is_dark(const VisibleLight& light) { return light.lit < 1.0f / 3 && light.shown < 0.5f; }
 
 bool is_dark(const Scene& scene, const RenderSettings& settings) {
   if (scene.lights().size() == 0) return true;

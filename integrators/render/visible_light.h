@@ -20,15 +20,19 @@ struct VisibleLight {
 /// on the scene and the camera alone. `width` and `height` are the camera's.
 VisibleLight visible_light(const Scene& scene, const Camera& camera, int width, int height);
 
-/// Whether a picture would be all but black: light from elsewhere reaches less than a tenth of what the
-/// camera sees, and less than half of it is shown at all. A glowing display lights nothing else and leaves
-/// its model dark; a lamp in the night lights more than that, and a model whose colours are all emitted
-/// needs no light.
+/// Whether most of a picture would be black: light from elsewhere reaches less than a third of what the
+/// camera sees, and less than half of it is shown at all. A glowing display lights little else and leaves its
+/// model dark, and so does a lamp behind it; a lamp in the night lights more than that (rooms and streets of
+/// lamps have 0.7 to 1 of what is seen lit), and a model whose colours are all emitted needs no light.
 bool is_dark(const VisibleLight& light);
 
-/// Mean luminance of a rendered picture over the pixels whose centres see a surface, or over all where none
-/// does; a few thousand of them are looked at.
-double covered_luminance(const Film& film, const Scene& scene, const Camera& camera,
-                         const RenderSettings& options);
+/// Luminance of a rendered picture over the pixels whose centres see a surface, or over all where none does;
+/// a few thousand of them are looked at.
+struct PictureLight {
+  double mean = 0;
+  double typical = 0;  ///< median of what is not in the dark
+};
+PictureLight picture_light(const Film& film, const Scene& scene, const Camera& camera,
+                           const RenderSettings& options);
 
 }  // namespace vernier

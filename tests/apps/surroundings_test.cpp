@@ -148,6 +148,24 @@ TEST(Surroundings, InfoTellsWhatARenderWouldUse) {
   EXPECT_THAT(run_vernier({"info", cornell_box}).out, HasSubstr("by camera front, without surroundings"));
 }
 
+TEST(Surroundings, WhatComesOutWhiteIsToldWithTheExposureThatMendsIt) {
+  const test::TemporaryFolder folder;
+  const std::string blazing = triangle_scene(folder, R"({"emissiveFactor": [1, 1, 1],
+    "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 200}}})");
+  EXPECT_THAT(rendered(folder, blazing).result.err, AllOf(HasSubstr("white"), HasSubstr("--exposure -10")));
+  EXPECT_THAT(rendered(folder, blazing, {"--exposure", "-10"}).result.err, Not(HasSubstr("white")));
+  EXPECT_THAT(rendered(folder, triangle_scene(folder, glowing)).result.err, Not(HasSubstr("white")));
+}
+
+TEST(Surroundings, WhatTheStudioDoesNotLightIsTold) {
+  const test::TemporaryFolder folder;
+  // Black metal in the studio is as dark as a room without a window.
+  const std::string black = triangle_scene(
+      folder, R"({"pbrMetallicRoughness": {"metallicFactor": 1, "baseColorFactor": [0, 0, 0, 1]},
+        "extensions": {"KHR_materials_specular": {"specularFactor": 0}}})");
+  EXPECT_THAT(rendered(folder, black).result.err, AllOf(HasSubstr("black"), HasSubstr("shut in")));
+}
+
 TEST(Surroundings, RaycastNeedsNone) {
   const test::TemporaryFolder folder;
   const Rendered picture = rendered(folder, triangle_scene(folder, plastic), {"--integrator", "raycast"});

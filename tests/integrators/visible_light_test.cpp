@@ -52,6 +52,14 @@ TEST(VisibleLight, AGlowingDisplayLeavesItsModelDark) {
   EXPECT_GT(light.shown, 0);
 }
 
+TEST(VisibleLight, ALampBehindABodyLeavesItDark) {
+  SceneBuilder builder = body();
+  builder.add(lamp(PunctualLightDescription::Kind::point, 100, {3, 2, -1}));
+  const VisibleLight light = seen(builder.build());
+  EXPECT_GT(light.lit, 0.1f);
+  EXPECT_TRUE(is_dark(light)) << light.lit;
+}
+
 TEST(VisibleLight, ALampInTheNightIsEnough) {
   SceneBuilder builder = body();
   builder.add(lamp(PunctualLightDescription::Kind::spot, 10, {0, 0, 4}));
