@@ -65,7 +65,7 @@ void warn_if_black(double mean, const RenderFlags& flags, const RenderReport& re
   std::vector<std::string> remedies;
   if (report.surroundings.name != "studio")
     remedies.emplace_back("--env studio lights it");
-  else
+  else if (mean < black)
     remedies.emplace_back("the studio lights nothing of it: what is shut in needs a lamp of its own");
   if (mean > 0)
     remedies.push_back(

@@ -159,11 +159,24 @@ TEST(Surroundings, WhatComesOutWhiteIsToldWithTheExposureThatMendsIt) {
 
 TEST(Surroundings, WhatTheStudioDoesNotLightIsTold) {
   const test::TemporaryFolder folder;
-  // Black metal in the studio is as dark as a room without a window.
-  const std::string black = triangle_scene(
-      folder, R"({"pbrMetallicRoughness": {"metallicFactor": 1, "baseColorFactor": [0, 0, 0, 1]},
-        "extensions": {"KHR_materials_specular": {"specularFactor": 0}}})");
-  EXPECT_THAT(rendered(folder, black).result.err, AllOf(HasSubstr("black"), HasSubstr("shut in")));
+  // A tetrahedron around a camera.
+  const std::string data =
+      "AAAQwQAAQMAAABBBAAAQQQAAQMAAABBBAAAAAAAAQMAAABDBAAAAAAAAEEEA"
+      "AAAAAAABAAIAAAABAAMAAQACAAMAAgAAAAMA";
+  const std::string shut = folder.write("shut.gltf", R"({"asset": {"version": "2.0"}, "scene": 0,
+    "scenes": [{"nodes": [0, 1]}], "nodes": [{"mesh": 0}, {"camera": 0}],
+    "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
+    "materials": [{"doubleSided": true}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [-9, -3, -9],
+                   "max": [9, 9, 9]}, {"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}],
+    "buffers": [{"byteLength": 72,
+                 "uri": "data:application/octet-stream;base64,)" +
+                                                         data + R"("}]})");
+  EXPECT_THAT(rendered(folder, shut).result.err, AllOf(HasSubstr("black"), HasSubstr("shut in")));
+  EXPECT_THAT(rendered(folder, triangle_scene(folder, plastic), {"--exposure", "-20"}).result.err,
+              AllOf(HasSubstr("black"), Not(HasSubstr("shut in"))));
 }
 
 TEST(Surroundings, RaycastNeedsNone) {
