@@ -1,78 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <draco/compression/encode.h>
-#include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <gmock/gmock.h>
 #include <meshoptimizer.h>
 
 #include <cmath>
 
-#include "tests/scene/import_support.h"
+#include "tests/scene/compressed_grids.h"
 
 namespace vernier::test {
 namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
-
-/// A grid of n x n quads over the unit square, bent.
-struct Grid {
-  std::vector<float> positions;
-  std::vector<uint32_t> indices;
-
-  explicit Grid(uint32_t n) {
-    for (uint32_t y = 0; y <= n; ++y)
-      for (uint32_t x = 0; x <= n; ++x) {
-        const float u = float(x) / float(n), v = float(y) / float(n);
-        positions.insert(positions.end(), {u, v, u * v});
-      }
-    for (uint32_t y = 0; y < n; ++y)
-      for (uint32_t x = 0; x < n; ++x) {
-        const uint32_t a = y * (n + 1) + x, b = a + n + 1;
-        indices.insert(indices.end(), {a, a + 1, b, a + 1, b + 1, b});
-      }
-  }
-};
-
-json meshopt_view(int buffer_view_bytes, size_t count, size_t stride, const char* mode,
-                  const char* filter = "NONE") {
-  return {{"buffer", 0},          {"byteLength", buffer_view_bytes},
-          {"byteStride", stride}, {"count", count},
-          {"mode", mode},         {"filter", filter}};
-}
-
-/// The grid with positions and indices compressed, in buffer 0; buffer 1 is the fallback nobody has.
-GltfFile meshopt_grid(const Grid& grid) {
-  const size_t vertices = grid.positions.size() / 3;
-  std::vector<uint8_t> packed_positions(meshopt_encodeVertexBufferBound(vertices, 12));
-  packed_positions.resize(meshopt_encodeVertexBuffer(packed_positions.data(), packed_positions.size(),
-                                                     grid.positions.data(), vertices, 12));
-  std::vector<uint8_t> packed_indices(meshopt_encodeIndexBufferBound(grid.indices.size(), vertices));
-  packed_indices.resize(meshopt_encodeIndexBuffer(packed_indices.data(), packed_indices.size(),
-                                                  grid.indices.data(), grid.indices.size()));
-  GltfFile file;
-  json position_view = meshopt_view(int(packed_positions.size()), vertices, 12, "ATTRIBUTES");
-  json index_view = meshopt_view(int(packed_indices.size()), grid.indices.size(), 4, "TRIANGLES");
-  position_view["byteOffset"] = 0;
-  file.buffer.assign(packed_positions.begin(), packed_positions.end());
-  index_view["byteOffset"] = file.buffer.size();
-  file.buffer.append(packed_indices.begin(), packed_indices.end());
-  file.json["buffers"] = {
-      {{"uri", "data.bin"}, {"byteLength", file.buffer.size()}},
-      {{"byteLength", 1 << 20}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
-  file.add("bufferViews", {{"buffer", 1},
-                           {"byteLength", vertices * 12},
-                           {"byteStride", 12},
-                           {"extensions", {{"EXT_meshopt_compression", position_view}}}});
-  file.add("bufferViews", {{"buffer", 1},
-                           {"byteLength", grid.indices.size() * 4},
-                           {"extensions", {{"EXT_meshopt_compression", index_view}}}});
-  file.add("accessors", {{"bufferView", 0}, {"componentType", 5126}, {"count", vertices}, {"type", "VEC3"}});
-  file.add("accessors",
-           {{"bufferView", 1}, {"componentType", 5125}, {"count", grid.indices.size()}, {"type", "SCALAR"}});
-  file.json["extensionsUsed"] = file.json["extensionsRequired"] = {"EXT_meshopt_compression"};
-  file.add_mesh({{"POSITION", 0}}, {{"indices", 1}});
-  return file;
-}
 
 /// The corners of all triangles, in an order that does not depend on how they are numbered.
 std::vector<std::array<float, 9>> sorted_triangles(const std::vector<Vec3f>& positions,
@@ -185,35 +123,6 @@ TEST(ImportCompression, NamesWhatTheMeshoptLibraryLacks) {
   GltfFile file = khr_meshopt_grid(Grid(4));
   file.buffer[0] = '\xa7';  // no library knows that version yet
   EXPECT_THAT(import_error(file), HasSubstr(place + "the data is of vertex codec 7"));
-}
-
-/// The grid through Draco's encoder, with positions of 16 bits.
-GltfFile draco_grid(const Grid& grid) {
-  draco::TriangleSoupMeshBuilder builder;
-  builder.Start(int(grid.indices.size() / 3));
-  const int attribute = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
-  for (uint32_t f = 0; f < grid.indices.size() / 3; ++f) {
-    const auto corner = [&](uint32_t c) { return &grid.positions[3 * size_t(grid.indices[3 * f + c])]; };
-    builder.SetAttributeValuesForFace(attribute, draco::FaceIndex(f), corner(0), corner(1), corner(2));
-  }
-  const auto mesh = builder.Finalize();
-  draco::Encoder encoder;
-  encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, 16);
-  draco::EncoderBuffer encoded;
-  EXPECT_TRUE(encoder.EncodeMeshToBuffer(*mesh, &encoded).ok());
-
-  GltfFile file;
-  const int view = file.add_view(std::vector<char>(encoded.data(), encoded.data() + encoded.size()));
-  const int positions =
-      file.add("accessors", {{"componentType", 5126}, {"count", mesh->num_points()}, {"type", "VEC3"}});
-  const int indices =
-      file.add("accessors", {{"componentType", 5125}, {"count", grid.indices.size()}, {"type", "SCALAR"}});
-  file.json["extensionsUsed"] = file.json["extensionsRequired"] = {"KHR_draco_mesh_compression"};
-  const json extension = {{"bufferView", view},
-                          {"attributes", {{"POSITION", mesh->attribute(attribute)->unique_id()}}}};
-  file.add_mesh({{"POSITION", positions}},
-                {{"indices", indices}, {"extensions", {{"KHR_draco_mesh_compression", extension}}}});
-  return file;
 }
 
 TEST(ImportCompression, DecodesDraco) {

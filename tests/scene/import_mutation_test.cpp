@@ -2,23 +2,58 @@
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
+#include <cstdlib>
 #include <random>
 
 #include "scene/scene.h"
-#include "tests/scene/import_support.h"
+#include "tests/scene/compressed_grids.h"
+#include "tests/support/ktx2_files.h"
 #include "tests/support/png_bytes.h"
 
-// Damaged scenes: a file that uses most of what the importer reads, changed at random. Whatever is done to
-// it, it is either read into a scene that can be built and traced, or refused by one Error that names the
-// file.
+// Damaged scenes: files that use most of what the importer reads, changed at random. Whatever is done to
+// them, they are either read into a scene that can be built and traced, or refused by one Error that names
+// the file. VERNIER_MUTANTS=N makes N of each kind in place of the few here.
 
 namespace vernier::test {
 namespace {
 
 using nlohmann::json;
 
-/// Indexed, textured, skinned, morphed, animated, instanced; sparse data, a volume, an archived material, a
-/// data URI, cameras and lights.
+/// Everything that a material may have beside the usual.
+json all_layers(const json& texture) {
+  return {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}, {"clearcoatTexture", texture}}},
+          {"KHR_materials_transmission", {{"transmissionFactor", 0.5}, {"transmissionTexture", texture}}},
+          {"KHR_materials_volume", {{"attenuationDistance", 2}, {"thicknessFactor", 1}}},
+          {"KHR_materials_volume_scatter", {{"multiscatterColor", {0.5, 0.2, 0.1}}}},
+          {"KHR_materials_scatter", {{"scatterMean", 0.3}}},
+          {"KHR_materials_ior", {{"ior", 1.3}}},
+          {"KHR_materials_dispersion", {{"dispersion", 1}}},
+          {"KHR_materials_emissive_strength", {{"emissiveStrength", 3}}},
+          {"KHR_materials_specular", {{"specularFactor", 0.5}, {"specularColorTexture", texture}}},
+          {"KHR_materials_anisotropy", {{"anisotropyStrength", 0.5}, {"anisotropyTexture", texture}}},
+          {"KHR_materials_diffuse_roughness", {{"diffuseRoughnessFactor", 0.5}}},
+          {"KHR_materials_diffuse_transmission", {{"diffuseTransmissionFactor", 0.5}}},
+          {"KHR_materials_iridescence", {{"iridescenceFactor", 1}, {"iridescenceTexture", texture}}},
+          {"KHR_materials_sheen", {{"sheenColorFactor", {1, 1, 1}}}},
+          {"KHR_xmp_json_ld", {{"packet", 0}}}};
+}
+
+/// What is set by pointers: of a node, a material, a texture's place, a lamp and a camera.
+void add_pointers(GltfFile& file, int times) {
+  const int ramp = file.add_accessor(std::vector<float>{0, 1}, "SCALAR");
+  json channels = json::array();
+  for (const char* pointer :
+       {"/nodes/1/extensions/KHR_node_visibility/visible",
+        "/materials/0/pbrMetallicRoughness/roughnessFactor", "/materials/0/normalTexture/scale",
+        "/extensions/KHR_lights_punctual/lights/0/intensity", "/cameras/0/perspective/yfov"}) {
+    const json extension = {{"KHR_animation_pointer", {{"pointer", pointer}}}};
+    channels.push_back({{"sampler", 0}, {"target", {{"path", "pointer"}, {"extensions", extension}}}});
+  }
+  file.add("animations", {{"channels", channels}, {"samplers", {{{"input", times}, {"output", ramp}}}}});
+}
+
+/// Indexed, textured, skinned, morphed, animated, instanced, hidden, in variants; sparse data, volumes, an
+/// archived material, lines and points, a data URI, cameras, lights and surroundings.
 GltfFile everything() {
   GltfFile file;
   const int positions = file.add_accessor(GltfFile::triangle_positions(), "VEC3");
@@ -44,17 +79,11 @@ GltfFile everything() {
   file.add("textures", {{"source", 0}, {"sampler", 0}});
   const json turned = {{"offset", {0.5, 0}}, {"rotation", 0.3}, {"scale", {2, 2}}};
   const json texture = {{"index", 0}, {"extensions", {{"KHR_texture_transform", turned}}}};
-  file.add("materials",
-           {{"pbrMetallicRoughness", {{"baseColorTexture", texture}, {"roughnessFactor", 0.4}}},
-            {"normalTexture", {{"index", 0}, {"scale", 0.5}}},
-            {"emissiveFactor", {1, 0.5, 0}},
-            {"alphaMode", "MASK"},
-            {"extensions",
-             {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}, {"clearcoatTexture", texture}}},
-              {"KHR_materials_transmission", {{"transmissionFactor", 0.5}}},
-              {"KHR_materials_volume", {{"attenuationDistance", 2}, {"thicknessFactor", 1}}},
-              {"KHR_materials_iridescence", {{"iridescenceFactor", 1}}},
-              {"KHR_materials_sheen", {{"sheenColorFactor", {1, 1, 1}}}}}}});
+  file.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", texture}, {"roughnessFactor", 0.4}}},
+                         {"normalTexture", {{"index", 0}, {"scale", 0.5}}},
+                         {"emissiveFactor", {1, 0.5, 0}},
+                         {"alphaMode", "MASK"},
+                         {"extensions", all_layers(texture)}});
   const json attributes = {{"POSITION", positions}, {"NORMAL", normals},  {"TEXCOORD_0", coordinates},
                            {"COLOR_0", colors},     {"JOINTS_0", joints}, {"WEIGHTS_0", weights}};
   file.add_mesh(attributes,
@@ -92,8 +121,54 @@ GltfFile everything() {
                 {{"material", 1}});
   file.add_root(
       {{"mesh", 1}, {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"_ID", times}}}}}}}});
-  file.json["extensionsUsed"] = {"KHR_lights_punctual", "EXT_mesh_gpu_instancing", "KHR_texture_transform"};
+  for (const int mode : {0, 1, 5})
+    file.add_mesh({{"POSITION", positions}, {"COLOR_0", colors}}, {{"mode", mode}, {"material", 1}});
+  json& primitive = file.json["meshes"][1]["primitives"][0];
+  primitive["extensions"]["KHR_materials_variants"]["mappings"] = {{{"material", 0}, {"variants", {0}}}};
+  file.json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "other"}}};
+  file.json["extensions"]["KHR_xmp_json_ld"]["packets"] = {{{"dc:title", "all"}}};
+  const json harmonics = json(std::vector<std::vector<float>>(9, {0.5f, 0.25f, 0.125f}));
+  file.json["extensions"]["EXT_lights_image_based"]["lights"] = {{{"intensity", 2},
+                                                                  {"rotation", {0, 0, 0, 1}},
+                                                                  {"irradianceCoefficients", harmonics},
+                                                                  {"specularImageSize", 1},
+                                                                  {"specularImages", {{0, 0, 0, 0, 0, 0}}}}};
+  file.json["scenes"][0]["extensions"]["EXT_lights_image_based"]["light"] = 0;
+  file.json["nodes"][1]["extensions"]["KHR_node_visibility"]["visible"] = true;
+  add_pointers(file, times);
+  file.json["extensionsUsed"] = {"KHR_lights_punctual",    "EXT_mesh_gpu_instancing", "KHR_texture_transform",
+                                 "KHR_materials_variants", "EXT_lights_image_based",  "KHR_node_visibility",
+                                 "KHR_animation_pointer"};
   return file;
+}
+
+/// Where the file names its buffer itself.
+void tell_length(GltfFile& file) {
+  if (file.json.contains("buffers")) file.json["buffers"][0]["byteLength"] = file.buffer.size();
+}
+
+/// The file with its first node going somewhere, as all here are read at a time of their animation.
+GltfFile animated(GltfFile file) {
+  const json linear = {{"input", file.add_accessor(std::vector<float>{0, 1}, "SCALAR")},
+                       {"output", file.add_accessor(std::vector<float>{0, 0, 0, 1, 0, 0}, "VEC3")}};
+  file.add("animations",
+           {{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}},
+            {"samplers", {linear}}});
+  tell_length(file);
+  return file;
+}
+
+/// A triangle with a KTX2 texture of one kind.
+GltfFile with_ktx2(const char* fixture) {
+  GltfFile file;
+  const int positions = file.add_accessor(GltfFile::triangle_positions(), "VEC3");
+  const int coordinates = file.add_accessor(std::vector<float>{0, 0, 1, 0, 0, 1}, "VEC2");
+  file.add("images", {{"bufferView", file.add_view(ktx2_fixture(fixture))}, {"mimeType", "image/ktx2"}});
+  file.add("textures", {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}});
+  file.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+  file.add_mesh({{"POSITION", positions}, {"TEXCOORD_0", coordinates}}, {{"material", 0}});
+  file.json["extensionsUsed"] = {"KHR_texture_basisu"};
+  return animated(file);
 }
 
 class Mutator {
@@ -169,9 +244,9 @@ class Mutator {
   std::mt19937_64 engine_;
 };
 
-/// Reads, builds and traces the scene; true when it was not refused. Anything but an Error goes on to the
-/// test.
-bool survives(const std::string& path) {
+/// Reads, builds and traces the scene; returns what it was refused with, nothing when it was not. Anything
+/// but an Error goes on to the test.
+std::string refusal(const std::string& path) {
   try {
     ImportOptions options;
     options.time = 0.5;
@@ -180,13 +255,13 @@ bool survives(const std::string& path) {
     ray.origin = {0.2f, 0.2f, 50};
     ray.direction = {0, 0, -1};
     if (const auto hit = scene.intersect(ray)) scene.shade(*hit, -ray.direction);
-    return true;
+    return {};
   } catch (const Error& e) {
     EXPECT_THAT(e.what(), testing::StartsWith(path + ": "));
     EXPECT_THAT(e.what(), testing::Not(testing::HasSubstr("\n")));
     // Of usage when the damage takes the animation away that is asked for.
     EXPECT_THAT(e.kind(), testing::AnyOf(ErrorKind::input, ErrorKind::usage)) << e.what();
-    return false;
+    return e.what();
   }
 }
 
@@ -196,57 +271,95 @@ long peak_megabytes() {
   return usage.ru_maxrss / 1024;
 }
 
-/// Saves `count` mutants and reads each; `mutant` gives the bytes for a seed.
+/// How many mutants of a kind.
+uint64_t number_or(uint64_t usual) {
+  const char* asked = std::getenv("VERNIER_MUTANTS");
+  return asked ? std::strtoull(asked, nullptr, 10) : usual;
+}
+
+/// Saves mutants and reads each; `mutant` gives the bytes for a seed. Returns how many were read.
 template <typename Mutant>
-void expect_read_or_refused(uint64_t count, const Mutant& mutant) {
+uint64_t expect_read_or_refused(uint64_t count, const Mutant& mutant) {
   const TemporaryFolder folder;
   const long before = peak_megabytes();
   uint64_t read = 0;
   for (uint64_t seed = 0; seed < count; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const std::string path = folder.write("scene.glb", mutant(seed));
-    EXPECT_NO_THROW(read += survives(path));
+    EXPECT_NO_THROW(read += refusal(path).empty());
   }
-  // Neither all nor none: otherwise the damage is too little or too great to test anything.
-  EXPECT_GT(read, count / 20);
-  EXPECT_LT(read, count - count / 20);
+  // Not all: otherwise the damage is too little to test anything.
+  EXPECT_LT(read, count);
   // A file of kilobytes; AddressSanitizer keeps up to 256 MB of what was freed.
   EXPECT_LT(peak_megabytes() - before, 1024);
+  return read;
 }
 
-TEST(ImportMutations, TheUnchangedFileIsRead) {
-  const TemporaryFolder folder;
-  EXPECT_TRUE(survives(folder.write("scene.glb", everything().glb())));
-}
-
-TEST(ImportMutations, ChangedJsonIsReadOrRefused) {
-  const GltfFile original = everything();
-  expect_read_or_refused(1000, [&](uint64_t seed) {
-    Mutator mutator(seed);
-    GltfFile file = original;
-    for (size_t changes = 1 + mutator.below(2); changes > 0; --changes) mutator.change(file.json);
-    return file.glb();
-  });
-}
-
-TEST(ImportMutations, ChangedBytesAreReadOrRefused) {
-  const std::string original = everything().glb();
-  expect_read_or_refused(1000, [&](uint64_t seed) {
-    Mutator mutator(seed);
-    std::string bytes = original;
-    for (size_t changes = 1 + mutator.below(3); changes > 0; --changes) mutator.change(bytes);
-    return bytes;
-  });
-}
-
-TEST(ImportMutations, ChangedBuffersAreReadOrRefused) {
-  const GltfFile original = everything();
-  expect_read_or_refused(500, [&](uint64_t seed) {
+/// With one to three changes to the buffer.
+uint64_t expect_buffers_read_or_refused(uint64_t usual, const GltfFile& original) {
+  return expect_read_or_refused(number_or(usual), [&](uint64_t seed) {
     Mutator mutator(seed);
     GltfFile file = original;
     for (size_t changes = 1 + mutator.below(3); changes > 0; --changes) mutator.change(file.buffer);
     return file.glb();
   });
+}
+
+TEST(ImportMutations, TheUnchangedFilesAreRead) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(refusal(folder.write("scene.glb", everything().glb())), "");
+  EXPECT_EQ(refusal(folder.write("draco.glb", animated(draco_grid(Grid(3))).glb())), "");
+  EXPECT_EQ(refusal(folder.write("etc1s.glb", with_ktx2("etc1s_alpha").glb())), "");
+  EXPECT_EQ(refusal(folder.write("uastc.glb", with_ktx2("uastc_zstandard").glb())), "");
+}
+
+TEST(ImportMutations, ChangedJsonIsReadOrRefused) {
+  const GltfFile original = everything();
+  const uint64_t count = number_or(1000);
+  const uint64_t read = expect_read_or_refused(count, [&](uint64_t seed) {
+    Mutator mutator(seed);
+    GltfFile file = original;
+    for (size_t changes = 1 + mutator.below(2); changes > 0; --changes) mutator.change(file.json);
+    return file.glb();
+  });
+  EXPECT_GT(read, count / 20);
+}
+
+TEST(ImportMutations, ChangedBytesAreReadOrRefused) {
+  const std::string original = everything().glb();
+  const uint64_t count = number_or(1000);
+  const uint64_t read = expect_read_or_refused(count, [&](uint64_t seed) {
+    Mutator mutator(seed);
+    std::string bytes = original;
+    for (size_t changes = 1 + mutator.below(3); changes > 0; --changes) mutator.change(bytes);
+    return bytes;
+  });
+  EXPECT_GT(read, count / 20);
+}
+
+TEST(ImportMutations, ChangedBuffersAreReadOrRefused) { expect_buffers_read_or_refused(500, everything()); }
+TEST(ImportMutations, ChangedDracoIsReadOrRefused) {
+  expect_buffers_read_or_refused(300, animated(draco_grid(Grid(3))));
+}
+TEST(ImportMutations, ChangedEtc1sIsReadOrRefused) {
+  expect_buffers_read_or_refused(300, with_ktx2("etc1s_alpha"));
+}
+TEST(ImportMutations, ChangedUastcIsReadOrRefused) {
+  expect_buffers_read_or_refused(300, with_ktx2("uastc_zstandard"));
+}
+TEST(ImportMutations, ChangedMeshoptIsReadOrRefused) {
+  const GltfFile original = animated(meshopt_grid(Grid(3)));
+  const TemporaryFolder folder;
+  const std::string path = original.save(folder);
+  EXPECT_EQ(refusal(path), "");
+  for (uint64_t seed = 0, count = number_or(300); seed < count; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Mutator mutator(seed);
+    GltfFile file = original;
+    for (size_t changes = 1 + mutator.below(3); changes > 0; --changes) mutator.change(file.buffer);
+    tell_length(file);
+    EXPECT_NO_THROW(refusal(file.save(folder)));
+  }
 }
 
 }  // namespace
