@@ -119,6 +119,8 @@ class Renderer {
                        [this](uint32_t part) { return part == state_.pass.size(); });
   }
   void end_pass() {
+    // The first picture of all pixels is worth having at once.
+    if (state_.completed_spp == 0 && std::isfinite(preview_.interval)) preview_.next = seconds();
     state_.completed_spp += state_.pass.size();
     for (int half = 0; half < Film::halves; ++half)
       state_.drawn.guiding[size_t(half)] += state_.pass.guiding_count(half);

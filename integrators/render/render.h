@@ -72,7 +72,8 @@ struct RenderCallbacks {
   /// that called render() while nothing is rendered; its time counts nowhere.
   std::function<void(const RenderState&)> on_checkpoint = {};
   double checkpoint_interval = std::numeric_limits<double>::infinity();
-  /// Gets the state in the same way, its error estimated, but not at the end.
+  /// Gets the state in the same way, its error estimated, but also as soon as all pixels have samples, and
+  /// not at the end.
   std::function<void(const RenderState&)> on_preview = {};
   double preview_interval = std::numeric_limits<double>::infinity();
   /// Where it becomes true, both are called soon whatever their intervals, and it is made false. Null: never.

@@ -146,6 +146,16 @@ TEST(RenderSession, PreviewsOnTheWayChangeNothing) {
   EXPECT_EQ(watched.picture().image.values, plain.picture().image.values);
 }
 
+TEST(RenderSession, TheFirstPreviewComesWithTheFirstSamples) {
+  RenderSession session(room(), settings_of_room());
+  std::vector<uint64_t> samples;
+  session.on_preview([&] { samples.push_back(session.status().samples); }, 1e9);
+  session.run();
+  ASSERT_EQ(samples.size(), 1u);
+  EXPECT_GT(samples[0], 0u);
+  EXPECT_LT(samples[0], session.status().samples / 4);
+}
+
 TEST(RenderSession, AskedForNowPreviewAndCheckpointComeOnce) {
   RenderSettings settings = settings_of_room();
   RenderSession session(room(), settings);
