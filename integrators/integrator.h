@@ -17,6 +17,7 @@
 
 namespace vernier {
 
+struct GradientSample;
 class SmallLamps;
 class SpecularChains;
 
@@ -65,6 +66,9 @@ struct SampleContext {
   const SmallLamps* small_lamps = nullptr;
   /// What the camera ray stands for; textures are read at points where it is the ray alone.
   RayCone cone{};
+  /// Where differences to the pixels beside are told, of an integrator that wants_gradients(); null: nobody
+  /// asks.
+  GradientSample* gradients = nullptr;
 };
 
 /// A way to estimate the light along a camera ray. Immutable while rendering; called from many threads.
@@ -78,6 +82,9 @@ class Integrator {
 
   /// What a picture of the scene needs beside camera samples.
   virtual LightPathKind light_paths(const Scene& /*scene*/) const { return LightPathKind::none; }
+  /// Whether it estimates differences between pixels (SampleContext::gradients), from which a picture is
+  /// reconstructed that is better than its samples.
+  virtual bool wants_gradients() const { return false; }
   /// Whether it leaves out what SampleContext::small_lamps bring.
   virtual bool leaves_small_lamps() const { return false; }
 };

@@ -166,4 +166,9 @@ bool casts_caustics(const Scene& scene) {
   return sharp > least_sharp_share * power;
 }
 
+bool follows_caustics(const IntegratorOptions& options, const Scene& scene) {
+  return options.caustics == Caustics::on ||
+         (options.caustics == Caustics::automatic && casts_caustics(scene));
+}
+
 }  // namespace vernier

@@ -6,6 +6,7 @@
 
 #include "core/sampling/distribution.h"
 #include "scene/scene.h"
+#include "vernier/settings.h"
 
 namespace vernier {
 
@@ -48,5 +49,7 @@ class LightEmission {
 /// Whether lamps of the scene shine on surfaces that mirror or bend their light sharply, enough to be worth
 /// light paths. By a few thousand rays of fixed numbers.
 bool casts_caustics(const Scene& scene);
+/// Whether a picture gets light paths for what that casts.
+bool follows_caustics(const IntegratorOptions& options, const Scene& scene);
 
 }  // namespace vernier

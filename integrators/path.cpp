@@ -110,9 +110,7 @@ class PathIntegrator : public Integrator {
 
   bool leaves_small_lamps() const override { return true; }
   LightPathKind light_paths(const Scene& scene) const override {
-    const bool follows = options_.caustics == Caustics::on ||
-                         (options_.caustics == Caustics::automatic && casts_caustics(scene));
-    return follows ? LightPathKind::caustics : LightPathKind::none;
+    return follows_caustics(options_, scene) ? LightPathKind::caustics : LightPathKind::none;
   }
 
  private:
@@ -121,17 +119,6 @@ class PathIntegrator : public Integrator {
     std::optional<SurfacePoint> from;
     float pdf = 0;
     bool is_delta = true;
-  };
-
-  /// Whether the first surface that scattered a path did so by a sharp lobe: then no path from a light ends
-  /// there.
-  struct SharpView {
-    bool is_scattered = false, is_sharp = false;
-
-    void scatter(bool is_delta) {
-      is_sharp = is_scattered ? is_sharp : is_delta;
-      is_scattered = true;
-    }
   };
 
   /// What a path carries.

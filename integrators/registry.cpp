@@ -9,13 +9,15 @@
 namespace vernier {
 
 std::unique_ptr<Integrator> make_path(const IntegratorOptions&);
+std::unique_ptr<Integrator> make_gradient(const IntegratorOptions&);
 std::unique_ptr<Integrator> make_light(const IntegratorOptions&);
 std::unique_ptr<Integrator> make_whitted(const IntegratorOptions&);
 std::unique_ptr<Integrator> make_raycast(const IntegratorOptions&);
 
 std::span<const IntegratorEntry> integrators() {
-  static constexpr std::array<IntegratorEntry, 4> table{{
+  static constexpr std::array<IntegratorEntry, 5> table{{
       {"path", "path tracing: all light, unbiased; tells what it cannot find", make_path, true, true},
+      {"gradient", "gradient-domain path tracing: less noise in single pixels, most in rooms", make_gradient},
       {"light", "light tracing: all light but what mirrors and bending glass show the camera", make_light},
       {"whitted", "direct light, ambient, mirror reflection and refraction", make_whitted, false, true},
       {"raycast", "primary hits: normals, depth, ids, ... (--show)", make_raycast, false, true},

@@ -35,6 +35,17 @@ inline float roulette_survival(const Rgb& throughput, int vertex) {
   return std::min(vertex > most_certain_vertices ? 0.99f : 1, 5 * max_component(throughput));
 }
 
+/// Whether the first surface that scattered a path did so by a sharp lobe: then no path from a light ends
+/// there, and SpecularChains look for the light of lamps.
+struct SharpView {
+  bool is_scattered = false, is_sharp = false;
+
+  void scatter(bool is_delta) {
+    is_sharp = is_scattered ? is_sharp : is_delta;
+    is_scattered = true;
+  }
+};
+
 /// What a camera makes of radiance along a segment that begins in a medium: as through a flat port from air,
 /// so radiance over the squared index, which no boundary changes.
 inline Rgb camera_response(const Scene& scene, const Segment& segment) {

@@ -16,13 +16,6 @@ float uncertainty(const Ray& ray, const SurfacePoint& point) {
   return across > 0 ? std::min(4 * along_normal / across, 1e-3f * point.t) : 0;
 }
 
-/// The one colour channel that a path still carries, if only one.
-std::optional<int> single_live_channel(const Rgb& throughput) {
-  for (int c = 0; c < 3; ++c)
-    if (throughput[c] != 0 && throughput[(c + 1) % 3] == 0 && throughput[(c + 2) % 3] == 0) return c;
-  return std::nullopt;
-}
-
 /// Boundaries that a ray crosses at one place, as a whole.
 class Crossing {
  public:
@@ -223,6 +216,12 @@ Passage transmittance(const Scene& scene, const Segment& segment) {
   }
   passage.fraction *= transmittance(scene.volumes().stretch(media, ray, t, ray.t_max), scale);
   return passage;
+}
+
+std::optional<int> single_live_channel(const Rgb& throughput) {
+  for (int c = 0; c < 3; ++c)
+    if (throughput[c] != 0 && throughput[(c + 1) % 3] == 0 && throughput[(c + 2) % 3] == 0) return c;
+  return std::nullopt;
 }
 
 Shading shade(const Scene& scene, const Interaction& at, const Vec3f& wo, const Rgb& throughput) {

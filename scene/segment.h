@@ -83,6 +83,9 @@ struct Passage {
 /// surfaces that do not bend, and absorption over its length, which may be infinite.
 Passage transmittance(const Scene& scene, const Segment& segment);
 
+/// The one color channel that a path still carries, if only one.
+std::optional<int> single_live_channel(const Rgb& throughput);
+
 /// The scattering at an interaction toward the unit direction wo, for a path whose throughput is
 /// `throughput`.
 Shading shade(const Scene& scene, const Interaction& at, const Vec3f& wo, const Rgb& throughput = {1, 1, 1});

@@ -131,9 +131,9 @@ function addScene(panel, facts) {
 function addRender(panel, choices) {
   panel.group('Rendering');
   panel.names('Integrator', '--integrator', choices['--integrator'],
-    {path: 'path: all light', whitted: 'whitted: direct light', light: 'light: paths from the lights', raycast: 'raycast: what is met'});
+    {path: 'path: all light', gradient: 'gradient: path, less noise in rooms', whitted: 'whitted: direct light', light: 'light: paths from the lights', raycast: 'raycast: what is met'});
   panel.names('Caustics', '--caustics', choices['--caustics'],
-    {auto: 'where lamps make some', on: 'yes', off: 'no'}, view => view.values['--integrator'] === 'path');
+    {auto: 'where lamps make some', on: 'yes', off: 'no'}, view => ['path', 'gradient'].includes(view.values['--integrator']));
   panel.names('Shows', '--show', choices['--show'], {}, view => view.values['--integrator'] === 'raycast');
   panel.select('Until', efforts.map((e, i) => ({value: String(i), text: e.text})), view => {
     const {'--spp': samples, '--error': error} = view.values;

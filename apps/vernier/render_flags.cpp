@@ -70,10 +70,9 @@ void add_integrator_flags(CLI::App& command, RenderFlags& flags) {
   command.add_option("--show", flags.show, "raycast: what to show; 'help' lists it")->type_name("NAME");
   add_max_depth_flag(command, flags);
   command
-      .add_option(
-          "--caustics", flags.caustics,
-          "path: what lamps cast by mirrors and bending glass, and what mirrors and glass show of it: auto "
-          "(where there is some), on, off (docs/caustics.md)")
+      .add_option("--caustics", flags.caustics,
+                  "path, gradient: what lamps cast by mirrors and bending glass, and what mirrors and glass "
+                  "show of it: auto (where there is some), on, off (docs/caustics.md)")
       ->check(CLI::IsMember({"auto", "on", "off"}))
       ->type_name("auto|on|off")
       ->capture_default_str();

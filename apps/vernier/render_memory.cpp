@@ -13,13 +13,14 @@ namespace {
 constexpr size_t color = 3 * sizeof(float);  // an Image of three channels
 
 size_t session_bytes(const MemoryUse& use) {
-  return RenderState::bytes_per_pixel(use.adaptive, use.alpha, use.light_parts, use.splats) +
-         (use.background_picture ? color : 0);
+  return RenderState::bytes_per_pixel(use.adaptive, use.alpha, use.light_parts, use.splats, use.gradients) +
+         (use.gradients ? Film::correction_bytes_per_pixel() : 0) + (use.background_picture ? color : 0);
 }
 
 size_t while_rendering(const MemoryUse& use) {
   const size_t planning = use.adaptive ? SamplePlan::planning_bytes_per_pixel() : 0;
-  return session_bytes(use) + std::max(planning, estimate_error_bytes_per_pixel());
+  const size_t reconstruction = use.gradients ? GradientFilm::reconstruction_bytes_per_pixel() : 0;
+  return session_bytes(use) + std::max({planning, reconstruction, estimate_error_bytes_per_pixel()});
 }
 
 size_t while_writing(const MemoryUse& use) {

@@ -16,8 +16,9 @@ struct MemoryUse {
   bool denoise = false;
   bool display = false;  ///< whether a .png or .jpg is written
   bool report = false;
-  bool splats = false;  ///< whether light paths may bring light, of which scene and camera decide
-  bool half = false;    ///< whether an .exr has 16-bit values, which are limited in a copy
+  bool splats = false;     ///< whether light paths may bring light, of which scene and camera decide
+  bool gradients = false;  ///< whether the integrator tells of differences between pixels
+  bool half = false;       ///< whether an .exr has 16-bit values, which are limited in a copy
 };
 
 /// Bytes that a pixel takes at the peak: while rendering or while the outputs are made, whichever needs more.

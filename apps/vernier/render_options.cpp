@@ -178,7 +178,8 @@ MemoryUse memory_use(const RenderRequest& request) {
   use.display = has_display_output(flags);
   use.report = !flags.report.empty();
   use.half = flags.exr.half;
-  use.splats = flags.integrator == "light" || flags.integrator == "path";
+  use.gradients = flags.integrator == "gradient";
+  use.splats = flags.integrator == "light" || flags.integrator == "path" || use.gradients;
   return use;
 }
 

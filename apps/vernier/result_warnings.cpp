@@ -19,10 +19,12 @@ void warn_of_bad_samples(const RenderResult& result, const RenderFlags& flags, N
   std::string replay;
   if (!result.bad_sample_examples.empty()) {
     const BadSample& first = result.bad_sample_examples.front();
-    replay = fmt::format(
-        "; pixel {},{} has one, and the same command with --crop 1x1+{}+{} --spp {} --adaptive off --seed {} "
-        "replays it",
-        first.x, first.y, first.x, first.y, 2 * (first.index + 1), flags.seed);
+    replay = fmt::format("; pixel {},{} has one", first.x, first.y);
+    // Of a single pixel there are no differences to others, which may be what was not finite.
+    if (!result.film.is_reconstructed())
+      replay += fmt::format(
+          ", and the same command with --crop 1x1+{}+{} --spp {} --adaptive off --seed {} replays it",
+          first.x, first.y, 2 * (first.index + 1), flags.seed);
   }
   log.add({Notice::Severity::warning,
            {},
@@ -46,6 +48,16 @@ void note_caustics(const RenderResult& result, const RenderFlags& flags, NoticeL
        {},
        "lamps shine on mirrors or glass that bends their light: what these cast (caustics) comes by paths "
        "that begin at the lamps; --caustics off leaves it out, and takes less time"});
+}
+
+/// What an error figure means less for than one of other integrators.
+void note_reconstruction(const RenderResult& result, NoticeLog& log) {
+  if (!result.film.is_reconstructed()) return;
+  log.add({Notice::Severity::info,
+           {},
+           "neighboring pixels err together in a picture that is made of differences between pixels: the "
+           "interval of its error is told by blocks of 8x8 pixels, and what averages pixels gains less than "
+           "of path's pictures"});
 }
 
 /// An approximation, and what becomes of it.
@@ -95,6 +107,7 @@ void warn_of_result(const RenderResult& result, const Scene& scene, const Render
   warn_of_bad_samples(result, flags, log);
   warn_of_bad_light_paths(result, log);
   note_caustics(result, flags, log);
+  note_reconstruction(result, log);
   note_texture_filter(report.settings, log);
   warn_of_missing_light(result, flags.integrator_options.max_depth, log);
   if (!shows_light(flags)) return;

@@ -7,6 +7,7 @@
 namespace vernier {
 
 void Film::merge(const Film& other) {
+  corrections_.clear();
   const auto merge_cells = [](ZeroedVector<Cell>& cells, const ZeroedVector<Cell>& others) {
     for (size_t i = 0; i < cells.size(); ++i) {
       Cell& cell = cells[i];
@@ -42,9 +43,14 @@ bool Film::is_plausible() const {
          std::all_of(splats_.begin(), splats_.end(), is_splat_cell);
 }
 
-Vec3d Film::half_mean(int x, int y, int half) const {
+Vec3d Film::sample_mean(int x, int y, int half) const {
   const Cell& cell = cells_[index(x, y, half)];
-  const Vec3d mean = cell.count ? cell.sum / double(cell.count) : Vec3d(0, 0, 0);
+  return cell.count ? cell.sum / double(cell.count) : Vec3d(0, 0, 0);
+}
+
+Vec3d Film::half_mean(int x, int y, int half) const {
+  Vec3d mean = sample_mean(x, y, half);
+  if (is_reconstructed()) mean += Vec3d(corrections_[index(x, y, half)]);
   return has_splats() ? mean + splat_mean(x, y, half) : mean;
 }
 

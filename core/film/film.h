@@ -72,6 +72,12 @@ class Film {
   /// So many more light paths were followed, whatever they brought.
   void count_light_paths(int half, uint64_t paths) { light_paths_[size_t(half)] += paths; }
 
+  /// Sets what is added to the means of the halves from now on, by pixel and half: what a reconstruction from
+  /// other knowledge than a pixel's own samples makes of them (GradientFilm). Errors of neighboring pixels
+  /// then go together. It is no part of bytes().
+  void correct(std::vector<Vec3f> corrections) { corrections_ = std::move(corrections); }
+  bool is_reconstructed() const { return !corrections_.empty(); }
+
   /// Adds the samples of another film of the same size, each half to its own. The halves stay independent
   /// when the other film's samples are independent of these.
   void merge(const Film& other);
@@ -85,9 +91,11 @@ class Film {
   uint32_t samples(int x, int y, int half) const { return cells_[index(x, y, half)].count; }
   uint32_t samples(int x, int y) const { return samples(x, y, 0) + samples(x, y, 1); }
 
-  /// Mean of one half's samples, zero where there are none, and what its splats add.
+  /// Mean of one half's samples, zero where there are none, what its splats add, and its correction.
   Vec3d half_mean(int x, int y, int half) const;
-  /// What they add.
+  /// Of its samples alone.
+  Vec3d sample_mean(int x, int y, int half) const;
+  /// What splats add.
   Vec3d splat_mean(int x, int y, int half) const;
   /// Variance that the mean of one half would have if its samples were independent: an upper bound in
   /// practice, since they are stratified. Zero with fewer than two samples.
@@ -127,6 +135,7 @@ class Film {
   std::span<std::byte> splat_bytes() { return std::as_writable_bytes(std::span(splats_)); }
   static constexpr size_t bytes_per_pixel() { return halves * sizeof(Cell); }
   static constexpr size_t splat_bytes_per_pixel() { return halves * sizeof(Cell); }
+  static constexpr size_t correction_bytes_per_pixel() { return halves * sizeof(Vec3f); }
   static constexpr size_t alpha_bytes_per_pixel() { return halves * sizeof(double); }
   /// Whether add() can have led to these sums; false only of damaged bytes.
   bool is_plausible() const;
@@ -150,6 +159,7 @@ class Film {
   ZeroedVector<double> transparency_;  ///< sums, by cell; empty without alpha
   ZeroedVector<Cell> splats_;          ///< by cell, of the light paths that have brought any; empty without
   std::array<uint64_t, halves> light_paths_{};
+  std::vector<Vec3f> corrections_;  ///< by cell; empty without
 };
 
 }  // namespace vernier

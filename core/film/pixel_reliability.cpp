@@ -49,7 +49,30 @@ Vec3d squared_half_difference(const Film& film, int x, int y) {
   return d * d;
 }
 
+namespace {
+
+/// The samples' spread says nothing of what is made from them; only the halves do. Their difference in one
+/// pixel is known by one degree of freedom, so that of pixels around is taken with it, if they are about as
+/// bright: beside a lamp's edge the wall has no part in its noise.
+Vec3d reconstructed_variance(const Film& film, int x, int y) {
+  constexpr double alike = 2, darkest = 0.02;
+  const auto brightness = [&](int i, int j) { return luminance(Rgb(Vec3f(film.pixel(i, j)))) + darkest; };
+  const double own = brightness(x, y);
+  Vec3d sum(0, 0, 0);
+  int pixels = 0;
+  for_each_near(film, x, y, 1, [&](int i, int j) {
+    const double there = brightness(i, j);
+    if (there > alike * own || own > alike * there) return;
+    sum += squared_half_difference(film, i, j);
+    ++pixels;
+  });
+  return pixels > 0 ? sum / double(pixels) : squared_half_difference(film, x, y);
+}
+
+}  // namespace
+
 Vec3d iid_variance(const Film& film, int x, int y) {
+  if (film.is_reconstructed()) return reconstructed_variance(film, x, y);
   return (film.half_mean_variance(x, y, 0) + film.half_mean_variance(x, y, 1)) / 4.0;
 }
 

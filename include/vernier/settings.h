@@ -22,8 +22,8 @@ enum class Caustics { automatic, on, off };
 struct IntegratorOptions {
   int max_depth = 16;                                 ///< path vertices after the camera
   LightSampling light_sampling = LightSampling::mis;  ///< path
-  bool russian_roulette = true;                       ///< path, light
-  Caustics caustics = Caustics::automatic;            ///< path
+  bool russian_roulette = true;                       ///< path, gradient, light
+  Caustics caustics = Caustics::automatic;            ///< path, gradient
   std::string show = "normal";                        ///< raycast: what to show
   float ambient = 0.05f;                              ///< whitted: constant ambient radiance
   float cutoff = 1e-3f;  ///< whitted: a recursive ray that would contribute less than this is not traced

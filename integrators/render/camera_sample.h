@@ -42,10 +42,11 @@ class CameraSamples {
 
   /// The point of the lens comes after that of the pixel, so that a pinhole's samples are those without
   /// lenses, and the time after both, so that what stands still has those without shutters.
-  CameraSample get(const CameraSampleId& id) const {
+  /// dx, dy: as the pixel so many columns and rows away would have it.
+  CameraSample get(const CameraSampleId& id, int dx = 0, int dy = 0) const {
     Sampler sampler(uint32_t(id.y) * width_ + uint32_t(id.x), id.index, 2 * seed_ + uint64_t(id.half));
-    const Vec2f raster = Vec2f(float(id.x), float(id.y)) + filter_.sample(sampler.next2());
-    CameraSample sample = at(sampler, raster, id.y);
+    const Vec2f raster = Vec2f(float(id.x + dx), float(id.y + dy)) + filter_.sample(sampler.next2());
+    CameraSample sample = at(sampler, raster, id.y + dy);
     if (texture_filter_.is_on()) sample.cone = cone(raster, id.index);
     return sample;
   }

@@ -49,6 +49,7 @@ void for_each_array(State& state, Plan& plan_counts, const Visit& visit) {
   visit("looks", bytes_of(state.partial.convergence));
   visit("bad samples", bytes_of(state.partial.bad_sample_examples));
   visit("splats", state.partial.film.splat_bytes());
+  if (!state.gradients.empty()) visit("gradients", state.gradients.bytes());
   for (auto& part : state.partial.light) visit(part.layer.c_str(), part.film.bytes());
   if (state.partial.film.has_splats())
     for (auto& part : state.partial.light) visit((part.layer + " splats").c_str(), part.film.splat_bytes());
@@ -64,6 +65,7 @@ Json header_of(const RenderIdentity& identity, const RenderState& state) {
               {"has_alpha", partial.film.has_alpha()},
               {"light_layers", Json::array()},
               {"has_splats", partial.film.has_splats()},
+              {"has_gradients", !state.gradients.empty()},
               {"light_batches", state.light_batches},
               {"bad_light_paths", partial.bad_light_paths},
               {"done", state.completed_spp},
@@ -106,6 +108,7 @@ std::shared_ptr<RenderState> allocate_state(const CheckpointReader& reader, cons
   const bool adaptive = header.at("adaptive").get<bool>();
   const bool has_alpha = header.at("has_alpha").get<bool>();
   const bool has_splats = header.at("has_splats").get<bool>();
+  const bool has_gradients = header.value("has_gradients", false);
   const auto light_layers = header.at("light_layers").get<std::vector<std::string>>();
   const Json& pass_header = header.at("pass");
   const uint32_t done = uint32_t(whole_number(reader, header.at("done"), "done", RenderState::most_samples));
@@ -133,6 +136,7 @@ std::shared_ptr<RenderState> allocate_state(const CheckpointReader& reader, cons
                                bytes(8) / sizeof(ConvergencePoint) * sizeof(ConvergencePoint),
                                bytes(9) / sizeof(BadSample) * sizeof(BadSample),
                                has_splats ? pixels * Film::splat_bytes_per_pixel() : 0};
+  if (has_gradients) expected.push_back(pixels * GradientFilm::bytes_per_pixel());
   expected.resize(expected.size() + light_layers.size(), pixels * Film::bytes_per_pixel());
   if (has_splats)
     expected.resize(expected.size() + light_layers.size(), pixels * Film::splat_bytes_per_pixel());
@@ -146,8 +150,8 @@ std::shared_ptr<RenderState> allocate_state(const CheckpointReader& reader, cons
   if (arrays.size() != expected.size() || total != reader.left())
     reader.damaged(fmt::format("{} bytes follow its header, expected {}", reader.left(), total));
 
-  auto state =
-      std::make_shared<RenderState>(int(width), int(height), adaptive, has_alpha, light_layers, has_splats);
+  auto state = std::make_shared<RenderState>(int(width), int(height), adaptive, has_alpha, light_layers,
+                                             has_splats, has_gradients);
   state->completed_spp = done;
   for (size_t half = 0; half < Film::halves; ++half)
     state->drawn.guiding[half] =

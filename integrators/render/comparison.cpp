@@ -49,16 +49,17 @@ struct MeasuredFile {
   const Image& mean;
   std::optional<Image> error, unreliable;
   double degrees;
-  bool denoised;
+  bool denoised, reconstructed;
 
   MeasuredFile(const LayeredImage& file, const Image& rgb)
       : mean(rgb),
         error(file.layer("error")),
         unreliable(file.single("error.unreliable")),
         degrees(error_degrees(file.metadata)),
-        denoised(file.metadata.contains("vernier:denoiser")) {}
+        denoised(file.metadata.contains("vernier:denoiser")),
+        reconstructed(file.metadata.contains("vernier:reconstruction")) {}
   MeasuredImage image() const {
-    return {mean, *error, degrees, unreliable ? &*unreliable : nullptr, denoised};
+    return {mean, *error, degrees, unreliable ? &*unreliable : nullptr, denoised || reconstructed};
   }
 };
 

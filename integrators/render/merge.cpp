@@ -46,14 +46,17 @@ void Merged::add(const std::string& path) {
     identity_ = std::move(checkpoint.identity);
     result_ = std::move(more);
     light_ = std::move(checkpoint.state->light);
+    gradients_ = std::move(checkpoint.state->gradients);
     return;
   }
   require_same_render(path, checkpoint.identity, identity_);
   if (more.film.width() != result_->film.width() || more.film.height() != result_->film.height() ||
       more.film.has_alpha() != result_->film.has_alpha() ||
-      more.film.has_splats() != result_->film.has_splats() || more.light.size() != result_->light.size())
+      more.film.has_splats() != result_->film.has_splats() || more.light.size() != result_->light.size() ||
+      checkpoint.state->gradients.empty() != gradients_.empty())
     throw Error(ErrorKind::input, path, {}, "is damaged: its picture is not of the size that it says");
   result_->film.merge(more.film);
+  gradients_.merge(checkpoint.state->gradients);
   for (size_t i = 0; i < more.light.size(); ++i) result_->light[i].film.merge(more.light[i].film);
   for (size_t tile = 0; tile < light_.size(); ++tile) light_[tile] += checkpoint.state->light[tile];
   result_->rays += more.rays;
@@ -64,6 +67,7 @@ void Merged::add(const std::string& path) {
 }
 
 RenderResult& Merged::result() {
+  if (!gradients_.empty()) gradients_.reconstruct(result_->film);
   result_->error = estimate_error(result_->film);
   result_->missing = estimate_missing(light_, result_->film);
   return *result_;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/film/gradient_film.h"
 #include "integrators/render/layers.h"
 #include "integrators/render/render.h"
 #include "integrators/render/settings_identity.h"
@@ -35,6 +36,7 @@ class Merged {
   std::optional<RenderResult> result_;
   RenderIdentity identity_;  ///< without seed, build and platform
   std::vector<TileLight> light_;
+  GradientFilm gradients_;  ///< empty where the integrator estimates none
   std::map<uint64_t, std::string> files_by_seed_;
 };
 

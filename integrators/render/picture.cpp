@@ -62,6 +62,7 @@ Metadata result_metadata(const RenderResult& result) {
     metadata["vernier:relRmse95"] = fmt::format("{:.6g} {:.6g}", result.error.low, result.error.high);
     metadata["vernier:unreliablePixels"] = fmt::format("{:.6g}", result.error.unreliable);
   }
+  if (result.film.is_reconstructed()) metadata["vernier:reconstruction"] = "gradient-domain";
   metadata["vernier:missingBentLight"] = fmt::format("{:.6g}", result.missing.bent.share);
   metadata["vernier:missingBeyondDepth"] = fmt::format("{:.6g}", result.missing.depth.share);
   return metadata;

@@ -9,6 +9,7 @@
 #include "integrators/render/backdrop.h"
 #include "integrators/render/camera_sample.h"
 #include "integrators/render/error_goal.h"
+#include "integrators/render/gradients.h"
 #include "integrators/render/light_pass.h"
 #include "integrators/render/observer_thread.h"
 #include "integrators/render/render_state.h"
@@ -150,7 +151,7 @@ class Renderer {
     if (state_.pass.size() == 0 && state_.completed_spp >= pilot &&
         state_.completed_spp > state_.last_checked_spp && due) {
       state_.last_checked_spp = state_.completed_spp;
-      result().convergence.push_back({seconds(), samples_per_pixel(), estimate_error(result().film)});
+      result().convergence.push_back({seconds(), samples_per_pixel(), estimate_error(state_)});
     }
     if (!reason_ && has_target && !result().convergence.empty() &&
         error_ratio(result().convergence.back().error, options_.limits.error) <= 1)
@@ -161,7 +162,7 @@ class Renderer {
     result().reason = *reason_;
     const auto& looks = result().convergence;
     const bool looked = !looks.empty() && looks.back().samples_per_pixel == samples_per_pixel();
-    result().error = looked ? looks.back().error : estimate_error(result().film);
+    result().error = looked ? looks.back().error : estimate_error(state_);
     if (!looked && state_.completed_spp >= pilot)
       result().convergence.push_back({seconds(), samples_per_pixel(), result().error});
     result().missing = estimate_missing(state_.light, result().film);
@@ -222,7 +223,7 @@ class Renderer {
     const bool now = callbacks_.now && callbacks_.now->exchange(false);
     if (is_due(save_, now)) take(save_);
     if (!is_due(preview_, now)) return;
-    result().error = estimate_error(result().film);
+    result().error = estimate_error(state_);
     take(preview_);
   }
 
@@ -248,21 +249,25 @@ class Renderer {
     const bool guides = number < state_.pass.guiding_count(half);
     const uint32_t index = draw_index(planned, guides);
     const int full_x = crop_.x + x, full_y = crop_.y + y;
-    CameraSample sample = camera_samples_.get({full_x, full_y, half, index});
+    const CameraSampleId id{full_x, full_y, half, index};
+    CameraSample sample = camera_samples_.get(id);
+    std::optional<GradientSample> gradients;
+    if (!state_.gradients.empty()) gradients = neighbors_of(id, camera_samples_, crop_);
     std::optional<LightParts> parts;
     if (sorter_) parts.emplace();
-    const SampleContext context{spread(x, y, half), sorter_,    parts ? &*parts : nullptr, chains_,
-                                small_lamps_,       sample.cone};
+    const SampleContext context{spread(x, y, half), sorter_,     parts ? &*parts : nullptr,        chains_,
+                                small_lamps_,       sample.cone, gradients ? &*gradients : nullptr};
     const Estimate estimate = integrator_.estimate(scene_, sample.ray, sample.sampler, context);
     ++totals.samples;
     totals.rays += estimate.rays;
     const FilmSample seen = backdrop_.behind(estimate, full_x, full_y);
-    if (!result().film.add(x, y, half, seen)) {
+    if ((gradients && !gradients->is_finite()) || !result().film.add(x, y, half, seen)) {
       ++totals.bad_samples;
       if (totals.bad_sample_examples.size() >= 8 * kept_bad_samples) keep_few(totals.bad_sample_examples);
       totals.bad_sample_examples.push_back({full_x, full_y, half, index});
       return;
     }
+    if (gradients) state_.gradients.add(x, y, half, gradients->primal_only, gradients->differences);
     if (guides) {
       totals.light.add(estimate);
       if (options_.adaptive) state_.guides[size_t(half)].add(x, y, seen.radiance);
@@ -364,12 +369,13 @@ void render(const RenderJob& job, RenderState& state, const std::atomic<bool>& s
 RenderResult render(const Scene& scene, const Camera& camera, const Integrator& integrator,
                     const RenderSettings& settings, const std::atomic<bool>& stop,
                     RenderCallbacks callbacks) {
+  check_gradients(integrator, scene, settings);
   const Crop part = rendered_part(settings);
   const Backdrop backdrop(settings);
   const LightSorter sorter(settings.light_split, scene);
   const auto light_paths = light_paths_of(scene, camera, integrator, settings, sorter);
   RenderState state(part.width, part.height, settings.adaptive, backdrop.is_transparent(), sorter.layers(),
-                    light_paths.has_value());
+                    light_paths.has_value(), integrator.wants_gradients());
   render({scene, camera, integrator, settings, backdrop, sorter, light_paths ? &*light_paths : nullptr},
          state, stop, std::move(callbacks));
   return std::move(state.partial);

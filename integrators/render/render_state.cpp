@@ -28,6 +28,11 @@ uint64_t accepted_samples(const Film& film) {
 
 }  // namespace
 
+ErrorEstimate estimate_error(RenderState& state) {
+  if (!state.gradients.empty()) state.gradients.reconstruct(state.partial.film);
+  return estimate_error(state.partial.film);
+}
+
 MissingEstimate estimate_missing(std::vector<TileLight> tiles, const Film& film) {
   constexpr int size = RenderState::tile_size;
   const int columns = (film.width() + size - 1) / size;
@@ -54,6 +59,7 @@ const char* implausible_part(const RenderState& state) {
   };
   if (!partial.film.is_plausible() || accepted_samples(partial.film) + partial.bad_samples != partial.samples)
     return "film";
+  if (!state.gradients.is_plausible()) return "gradients";
   for (const LightFilm& part : partial.light)
     if (!part.film.is_plausible()) return part.layer.c_str();
   if (!state.guides[0].is_plausible()) return "guide 1";

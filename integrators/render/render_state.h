@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/film/gradient_film.h"
 #include "integrators/render/render.h"
 #include "integrators/render/sample_plan.h"
 
@@ -24,12 +25,14 @@ struct RenderState {
 
   /// Of a picture, or crop, of which nothing is rendered yet.
   RenderState(int width, int height, bool adaptive, bool has_alpha = false,
-              std::span<const std::string> light_layers = {}, bool has_splats = false)
+              std::span<const std::string> light_layers = {}, bool has_splats = false,
+              bool has_gradients = false)
       : partial(Film(width, height, has_alpha, has_splats)),
         guides{SampleStatistics(adaptive ? width : 0, height),
                SampleStatistics(adaptive ? width : 0, height)},
         drawn{{}, std::vector<uint32_t>(adaptive ? size_t(width) * height * Film::halves : 0)},
         light(size_t(tile_count())) {
+    if (has_gradients) gradients = GradientFilm(width, height);
     for (const std::string& layer : light_layers)
       partial.light.push_back({layer, Film(width, height, false, has_splats)});
   }
@@ -44,27 +47,30 @@ struct RenderState {
   int tile_count() const { return tile_count(partial.film.width(), partial.film.height()); }
 
   static constexpr size_t bytes_per_pixel(bool adaptive, bool has_alpha, size_t light_layers = 0,
-                                          bool has_splats = false) {
+                                          bool has_splats = false, bool has_gradients = false) {
     // Guides, the plan, and which samples come next.
     const size_t guiding =
         Film::halves * (SampleStatistics::bytes_per_pixel() + sizeof(uint16_t) + sizeof(uint32_t));
     const size_t splats = has_splats ? Film::splat_bytes_per_pixel() : 0;
     return (1 + light_layers) * (Film::bytes_per_pixel() + splats) +
-           (has_alpha ? Film::alpha_bytes_per_pixel() : 0) + (adaptive ? guiding : 0);
+           (has_alpha ? Film::alpha_bytes_per_pixel() : 0) + (adaptive ? guiding : 0) +
+           (has_gradients ? GradientFilm::bytes_per_pixel() : 0);
   }
   /// Whether a render of a picture, or crop, of this size can go on from it.
   bool fits(int width, int height, bool adaptive, bool has_alpha,
-            std::span<const std::string> light_layers = {}, bool has_splats = false) const {
+            std::span<const std::string> light_layers = {}, bool has_splats = false,
+            bool has_gradients = false) const {
     return std::equal(partial.light.begin(), partial.light.end(), light_layers.begin(), light_layers.end(),
                       [](const LightFilm& part, const std::string& layer) { return part.layer == layer; }) &&
            partial.film.width() == width && partial.film.height() == height &&
            partial.film.has_alpha() == has_alpha && partial.film.has_splats() == has_splats &&
-           guides[0].bytes().empty() == !adaptive;
+           guides[0].bytes().empty() == !adaptive && gradients.empty() == !has_gradients;
   }
 
   RenderResult partial;                               ///< `reason` and `error` are not known yet
   std::array<SampleStatistics, Film::halves> guides;  ///< empty without adaptive sampling
   SamplesDrawn drawn;                                 ///< which samples come next
+  GradientFilm gradients;                             ///< of integrators that estimate them; else empty
   std::vector<TileLight> light;                       ///< by tile, of the samples that all pixels get alike
   uint32_t completed_spp = 0;                         ///< samples a pixel of all complete passes
   uint32_t last_checked_spp = 0;                      ///< `completed_spp` when the error was last estimated
@@ -72,6 +78,9 @@ struct RenderState {
   std::vector<uint32_t> tile_progress;  ///< how much of it each tile has done, in samples a pixel
   uint64_t light_batches = 0;           ///< of light paths (render/light_pass.h) that are done
 };
+
+/// The error of what there is, reconstructed first where there are gradients.
+ErrorEstimate estimate_error(RenderState& state);
 
 /// Of tiles whose samples are spread evenly over their pixels, to which the light paths of a film add theirs.
 MissingEstimate estimate_missing(std::vector<TileLight> tiles, const Film& film);

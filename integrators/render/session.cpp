@@ -13,6 +13,7 @@
 #include "integrators/light_paths.h"
 #include "integrators/render/backdrop.h"
 #include "integrators/render/checkpoint.h"
+#include "integrators/render/gradients.h"
 #include "integrators/render/layers.h"
 #include "integrators/render/picture.h"
 #include "integrators/render/pixel_filter.h"
@@ -81,7 +82,10 @@ class RenderSession::State {
         sorter(settings.light_split, *scene),
         light_paths(light_paths_of(*scene, camera, *integrator, settings, sorter)),
         render(rendered_part(settings).width, rendered_part(settings).height, settings.adaptive,
-               backdrop.is_transparent(), sorter.layers(), light_paths.has_value()) {}
+               backdrop.is_transparent(), sorter.layers(), light_paths.has_value(),
+               integrator->wants_gradients()) {
+    check_gradients(*integrator, *scene, settings);
+  }
 
   RenderIdentity identity() const {
     RenderIdentity identity{{"version", version()}};
@@ -209,13 +213,13 @@ std::vector<Notice> RenderSession::load(const std::string& path) {
   const Crop part = rendered_part(state_->settings);
   if (!checkpoint.state->fits(part.width, part.height, state_->settings.adaptive,
                               state_->backdrop.is_transparent(), state_->sorter.layers(),
-                              state_->light_paths.has_value()))
+                              state_->light_paths.has_value(), state_->integrator->wants_gradients()))
     throw Error(ErrorKind::input, path, {},
                 "is damaged: what it holds is not of the size that it says; use another checkpoint or render "
                 "from the beginning");
   state_->render = std::move(*checkpoint.state);
   RenderResult& partial = state_->render.partial;
-  partial.error = estimate_error(partial.film);
+  partial.error = estimate_error(state_->render);
   partial.missing = estimate_missing(state_->render.light, partial.film);
   return notices;
 }
@@ -232,6 +236,8 @@ RenderStatus RenderSession::status() const {
 
 LayeredImage RenderSession::picture(const std::string& layers) const {
   const Use use(state_->user);
+  // What has been rendered since the error was last looked at is in the film, but not in its correction.
+  if (!state_->render.gradients.empty()) state_->render.gradients.reconstruct(state_->render.partial.film);
   const RenderResult& partial = state_->render.partial;
   const RenderSettings& settings = state_->settings;
   LayeredImage picture = with_layers(partial, find_layers(layers), *state_->scene, state_->camera, settings,

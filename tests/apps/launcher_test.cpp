@@ -100,7 +100,7 @@ TEST(CliFiles, AreWrittenFromTheCommandLine) {
   EXPECT_THAT(manual, Not(HasSubstr("cli\\-files")));
   EXPECT_THAT(contents(folder.file("_vernier")), HasSubstr("_vernier_bench_rays() {"));
   EXPECT_THAT(contents(folder.file("vernier.fish")),
-              HasSubstr("-l integrator -x -a 'path light whitted raycast'"));
+              HasSubstr("-l integrator -x -a 'path gradient light whitted raycast'"));
 }
 
 TEST(CliFiles, NeedAFolder) {

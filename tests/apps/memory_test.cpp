@@ -15,10 +15,11 @@ namespace {
 using Flags = std::vector<std::string>;
 
 ProcessResult render(const std::string& size, const TemporaryFolder& folder, const Flags& more) {
-  Flags arguments{"render",  two_spheres,           "--integrator", "raycast", "--spp",
-                  "17",      "--progress",          "none",         "-o",      folder.file("a.exr"),
-                  "--stats", folder.file("a.json"), "--size",       size};
+  Flags arguments{"render",  two_spheres,           "--progress", "none", "-o", folder.file("a.exr"),
+                  "--stats", folder.file("a.json"), "--size",     size};
   arguments.insert(arguments.end(), more.begin(), more.end());
+  if (std::find(more.begin(), more.end(), "--integrator") == more.end())
+    arguments.insert(arguments.end(), {"--integrator", "raycast", "--spp", "17"});
   return run_vernier(arguments);
 }
 
@@ -60,6 +61,7 @@ TEST_P(MemoryCheck, IsWhatARenderTakes) {
 
 INSTANTIATE_TEST_SUITE_P(Memory, MemoryCheck,
                          testing::Values(Flags{}, Flags{"--adaptive", "off"}, Flags{"--aov", "all"},
+                                         Flags{"--integrator", "gradient", "--spp", "2", "--max-depth", "1"},
                                          Flags{"-o", "a.png"}, Flags{"--aov", "all", "--report", "a.html"},
                                          Flags{"--denoise", "gaussian", "-o", "a.png"}));
 

@@ -21,6 +21,7 @@ _FILTERS = [
     ("blackman-harris:1.5", "Blackman-Harris", "Of 1.5 pixels, as Blender's other engines have it")]
 _INTEGRATORS = [
     ("path", "Path Tracing", "All light, unbiased"),
+    ("gradient", "Gradient-Domain Path Tracing", "The same with less noise in single pixels of rooms; without fog"),
     ("whitted", "Whitted", "Direct light, mirrors and refraction alone")]
 
 

@@ -42,11 +42,11 @@ class Settings(TypedDict, total=False):
     fog: Fog | float | None
     """What fills the air and scatters light; a number is its density per metre (None: nothing)."""
     integrator: str
-    """"path", "light", "whitted" or "raycast" ("path")."""
+    """"path", "gradient", "light", "whitted" or "raycast" ("path")."""
     max_depth: int
     """Path vertices after the camera (16)."""
     caustics: str
-    """path: what lamps cast by mirrors and bending glass, "auto", "on" or "off" ("auto")."""
+    """path, gradient: what lamps cast by mirrors and bending glass, "auto", "on" or "off" ("auto")."""
     show: str
     """raycast: what is shown ("normal")."""
     ambient: float
