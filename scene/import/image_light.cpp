@@ -151,13 +151,16 @@ class ImageLightReader {
 
   Imath::Quatf rotation(std::vector<Notice>& notices) const {
     if (!light_.Has("rotation")) return {};
-    const auto value = [&](size_t i) { return float(light_.Get("rotation").Get(i).GetNumberAsDouble()); };
-    const Imath::Quatf rotation(value(3), value(0), value(1), value(2));
-    if (!(rotation.length() > 0)) document_.fail(place_ + "/rotation", "a rotation must not be zero");
-    if (std::abs(rotation.length() - 1) > 0.01f)
+    const auto value = [&](size_t i) { return light_.Get("rotation").Get(i).GetNumberAsDouble(); };
+    Imath::Quatd rotation(value(3), value(0), value(1), value(2));
+    const double largest =
+        std::max({std::abs(value(0)), std::abs(value(1)), std::abs(value(2)), std::abs(value(3))});
+    if (!(largest > 0)) document_.fail(place_ + "/rotation", "a rotation must not be zero");
+    rotation /= largest;  // squares of any numbers might be too large or too small
+    if (std::abs(largest * rotation.length() - 1) > 0.01)
       notices.push_back({Notice::Severity::warning, place_ + "/rotation",
                          "the rotation was not of unit length and was scaled"});
-    return rotation.normalized();
+    return Imath::Quatf(rotation.normalized());
   }
 
   const Document& document_;

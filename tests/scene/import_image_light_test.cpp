@@ -99,6 +99,11 @@ TEST(ImportImageLight, RotationAndIntensity) {
   // A third of a turn about the diagonal takes x to y, y to z and z to x; not of unit length, which is said.
   const SceneDescription diagonal = lit_by_colors({{"rotation", {1, 1, 1, 1}}}).import();
   EXPECT_TRUE(has_notice(diagonal, "the rotation was not of unit length"));
+  // Whatever its length.
+  for (const double length : {1e-300, 1e-30, 1e30, 1e300}) {
+    const SceneDescription same = lit_by_colors({{"rotation", {length, length, length, length}}}).import();
+    EXPECT_EQ(same.environment->picture->values, diagonal.environment->picture->values) << length;
+  }
   const EnvironmentLight turned(diagonal.environment);
   const auto after = [](const Vec3f& v) { return Vec3f(v.z, v.x, v.y); };
   for (size_t i = 0; i < 6; ++i) {
