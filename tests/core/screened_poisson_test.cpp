@@ -30,15 +30,15 @@ TEST(ScreenedPoisson, SolvesItsEquation) {
           sum += double(c.pixel(x, y)[k]) - double(c.pixel(i, j)[k]) + wanted;
         };
         if (x > 0) side(x - 1, y, -double(lack.right.pixel(x - 1, y)[k]));
-        if (x + 1 < width) side(x + 1, y, double(lack.right.pixel(x, y)[k]));
+        if (x + 1 < c.width) side(x + 1, y, double(lack.right.pixel(x, y)[k]));
         if (y > 0) side(x, y - 1, -double(lack.down.pixel(x, y - 1)[k]));
-        if (y + 1 < height) side(x, y + 1, double(lack.down.pixel(x, y)[k]));
+        if (y + 1 < c.height) side(x, y + 1, double(lack.down.pixel(x, y)[k]));
         return sum;
       };
-      for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
+      for (int y = 0; y < c.height; ++y)
+        for (int x = 0; x < c.width; ++x)
           for (int k = 0; k < 3; ++k)
-            EXPECT_NEAR(slope(x, y, k), 0, 1e-4) << width << "x" << height << ", " << screen;
+            EXPECT_NEAR(slope(x, y, k), 0, 1e-4) << c.width << "x" << c.height << ", " << screen;
     }
 }
 

@@ -91,9 +91,8 @@ TEST(Framing, TheCameraIsMovedButNotTurned) {
 TEST(Framing, AHouseInSurveyCoordinatesFillsItsPicture) {
   // Five thousand kilometres out, single precision has steps of half a metre.
   const Vec3f place(512345, 120, -5412345);
-  std::vector<Vec3f> points;
-  for (int i = 0; i < 8; ++i)
-    points.push_back(place + Vec3f(i & 1 ? 12.f : 0.f, i & 2 ? 6.f : 0.f, i & 4 ? 8.f : 0.f));
+  std::vector<Vec3f> points(8, place);
+  for (size_t i = 0; i < 8; ++i) points[i] += Vec3f(i & 1 ? 12.f : 0.f, i & 2 ? 6.f : 0.f, i & 4 ? 8.f : 0.f);
   Random random(3);
   for (int trial = 0; trial < 20; ++trial) {
     const auto camera =
