@@ -31,6 +31,11 @@ class Members {
     const Value* value = find(name);
     return value ? float(value->GetNumberAsDouble()) : otherwise;
   }
+  /// Not by way of a float, which has no largest int.
+  int integer(const std::string& name, int otherwise) const {
+    const Value* value = find(name);
+    return value ? int(value->GetNumberAsDouble()) : otherwise;
+  }
   Vec2f pair(const std::string& name, const Vec2f& otherwise) const {
     const Value* value = find(name);
     return value ? Vec2f(component(*value, 0), component(*value, 1)) : otherwise;
@@ -265,14 +270,14 @@ class MaterialReader {
     const Members info(owner.find(name));
     if (!info.exist()) return {};
     const Members extensions(info.find("extensions"));
-    return transformed_use(int(info.number("index", -1)), int(info.number("texCoord", 0)),
+    return transformed_use(info.integer("index", -1), info.integer("texCoord", 0),
                            Members(extensions.find("KHR_texture_transform")));
   }
 
   TextureUse transformed_use(int texture, int texcoord, const Members& transform) {
     TextureUse use;
     use.texture = texture;
-    use.texcoord = int(transform.number("texCoord", float(texcoord)));
+    use.texcoord = transform.integer("texCoord", texcoord);
     use.offset = transform.pair("offset", use.offset);
     use.scale = transform.pair("scale", use.scale);
     use.rotation = transform.number("rotation", 0);

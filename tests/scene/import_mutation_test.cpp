@@ -313,6 +313,17 @@ TEST(ImportMutations, TheUnchangedFilesAreRead) {
   EXPECT_EQ(refusal(folder.write("uastc.glb", with_ktx2("uastc_zstandard").glb())), "");
 }
 
+TEST(ImportMutations, TheLargestSetOfCoordinatesIsNoNumberBelowZero) {
+  const TemporaryFolder folder;
+  GltfFile file = everything();
+  json& layers = file.json["materials"][0]["extensions"];
+  layers["KHR_materials_clearcoat"]["clearcoatTexture"]["texCoord"] = 2147483647;
+  EXPECT_NO_THROW(refusal(folder.write("layer.glb", file.glb())));
+  layers["KHR_materials_clearcoat"]["clearcoatTexture"]["extensions"]["KHR_texture_transform"]["texCoord"] =
+      2147483647;
+  EXPECT_NO_THROW(refusal(folder.write("transform.glb", file.glb())));
+}
+
 TEST(ImportMutations, ChangedJsonIsReadOrRefused) {
   const GltfFile original = everything();
   const uint64_t count = number_or(1000);
