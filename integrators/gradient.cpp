@@ -77,7 +77,8 @@ class GradientIntegrator : public Integrator {
       throughput *= next->weight;
       if (is_black(throughput)) break;
       eta_scale *= next->eta * next->eta;
-      const float survival = survival_probability(vertex, depth, throughput * (eta_scale / audit_scale));
+      const float survival =
+          survival_probability(options_, vertex, depth, throughput * (eta_scale / audit_scale));
       if (roulette >= survival) break;
       throughput /= survival;
       const SurfacePoint before = *hit;
@@ -252,12 +253,6 @@ class GradientIntegrator : public Integrator {
       (paths.depth + passage->surfaces <= options_.max_depth ? result.radiance : result.beyond) = radiance;
     }
     return result;
-  }
-
-  float survival_probability(int vertex, int depth, const Rgb& throughput) const {
-    const float survival = roulette_survival(throughput, vertex);
-    if (depth > options_.max_depth) return std::min(most_audited_survival, survival);
-    return is_at_risk(options_, vertex) ? survival : 1;
   }
 
   IntegratorOptions options_;

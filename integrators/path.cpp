@@ -90,7 +90,8 @@ class PathIntegrator : public Integrator {
       if (context.sorter) route = route.scattered(surface, next->wi, next->is_delta, next->is_straight);
       throughput *= next->weight;
       eta_scale *= next->eta * next->eta;
-      const float survival = survival_probability(vertex, depth, throughput * (eta_scale / audit_scale));
+      const float survival =
+          survival_probability(options_, vertex, depth, throughput * (eta_scale / audit_scale));
       if (roulette >= survival) break;
       throughput /= survival;
       looks_through = looks_through && next->is_transmitted;
@@ -276,13 +277,6 @@ class PathIntegrator : public Integrator {
     return options_.russian_roulette && spread > 0
                ? std::clamp(4 * max_component(radiance) / spread, 1 / 16.f, 1.f)
                : 1;
-  }
-
-  /// Russian roulette.
-  float survival_probability(int vertex, int depth, const Rgb& throughput) const {
-    const float survival = roulette_survival(throughput, vertex);
-    if (depth > options_.max_depth) return std::min(most_audited_survival, survival);
-    return is_at_risk(options_, vertex) ? survival : 1;
   }
 
   IntegratorOptions options_;

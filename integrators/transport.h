@@ -35,6 +35,14 @@ inline float roulette_survival(const Rgb& throughput, int vertex) {
   return std::min(vertex > most_certain_vertices ? 0.99f : 1, 5 * max_component(throughput));
 }
 
+/// The same of a path from the camera, to its vertex of that number, with light of `depth` vertices.
+inline float survival_probability(const IntegratorOptions& options, int vertex, int depth,
+                                  const Rgb& throughput) {
+  const float survival = roulette_survival(throughput, vertex);
+  if (depth > options.max_depth) return std::min(most_audited_survival, survival);
+  return is_at_risk(options, vertex) ? survival : 1;
+}
+
 /// Whether the first surface that scattered a path did so by a sharp lobe: then no path from a light ends
 /// there, and SpecularChains look for the light of lamps.
 struct SharpView {

@@ -9,7 +9,7 @@ namespace vernier::apps {
 
 void add_display_flags(CLI::App& command, DisplayOptions& options) {
   command.add_option("--exposure", options.exposure, "stops, for PNG and JPEG")
-      ->transform(real_number(-100, 100))
+      ->transform(real_number(-most_stops, most_stops))
       ->type_name("EV");
   command.add_option("--view", options.view, "display view for PNG and JPEG; 'help' lists them")
       ->type_name("NAME");

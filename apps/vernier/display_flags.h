@@ -9,6 +9,9 @@
 
 namespace vernier::apps {
 
+/// As far as --exposure goes, up and down.
+constexpr double most_stops = 100;
+
 /// --exposure, --view and --ocio.
 void add_display_flags(CLI::App& command, DisplayOptions& options);
 

@@ -93,11 +93,6 @@ bool equal_ignoring_case(std::string_view a, std::string_view b) {
                     [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
-bool has_display_output(const RenderFlags& flags) {
-  return std::any_of(flags.outputs.begin(), flags.outputs.end(),
-                     [&](const auto& output) { return is_display_output(output, flags.run.format); });
-}
-
 /// The view is the one asked for, else the config's default, but for raycast's pictures: they are data and go
 /// to the display unchanged where the config has a raw view.
 DisplayOptions choose_display(const RenderFlags& flags) {
@@ -158,6 +153,11 @@ std::vector<std::string> named_outputs(const RenderFlags& flags) {
 }
 
 }  // namespace
+
+bool has_display_output(const RenderFlags& flags) {
+  return std::any_of(flags.outputs.begin(), flags.outputs.end(),
+                     [&](const auto& output) { return is_display_output(output, flags.run.format); });
+}
 
 MemoryUse memory_use(const RenderRequest& request) {
   const RenderFlags& flags = request.flags;

@@ -35,6 +35,9 @@ struct RenderRequest {
 /// Checks names and sizes, and decodes nothing. Files: run_plan.h. Throws Error.
 RenderRequest check_render_flags(const RenderFlags& flags);
 
+/// Whether a .png or .jpg is among the outputs.
+bool has_display_output(const RenderFlags& flags);
+
 MemoryUse memory_use(const RenderRequest& request);
 
 /// Whether the crop lies in the picture, and what a render of it takes in memory. Throws Error(usage) or

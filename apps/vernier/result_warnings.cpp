@@ -6,7 +6,9 @@
 
 #include <cmath>
 
+#include "apps/vernier/display_flags.h"
 #include "apps/vernier/missing_text.h"
+#include "apps/vernier/render_options.h"
 #include "integrators/render/texture_filter.h"
 #include "integrators/render/visible_light.h"
 #include "scene/camera.h"
@@ -70,9 +72,14 @@ void note_texture_filter(const RenderSettings& settings, NoticeLog& log) {
                        texture_filter_text(settings.texture_filter))});
 }
 
+/// The stops that make a luminance a middle gray, as far as --exposure goes.
+double exposure_to_gray(double luminance) {
+  return std::clamp(std::log2(0.18 / luminance), -most_stops, most_stops);
+}
+
 /// Says so when what the camera sees of the scene comes out all but black, and what helps.
 void warn_if_black(double mean, const RenderFlags& flags, const RenderReport& report, NoticeLog& log) {
-  constexpr double black = 0.005, gray = 0.18;
+  constexpr double black = 0.005;
   if (mean * std::exp2(flags.display.exposure) >= black) return;
   std::vector<std::string> remedies;
   if (report.surroundings.name != "studio")
@@ -81,23 +88,24 @@ void warn_if_black(double mean, const RenderFlags& flags, const RenderReport& re
     remedies.emplace_back("the studio lights nothing of it: what is shut in needs a lamp of its own");
   if (mean > 0)
     remedies.push_back(
-        fmt::format("--exposure {:.0f} brightens a .png or .jpg", std::ceil(std::log2(gray / mean))));
+        fmt::format("--exposure {:.0f} brightens a .png or .jpg", std::ceil(exposure_to_gray(mean))));
   log.add({Notice::Severity::warning,
            {},
            fmt::format("the picture is almost all black, its mean luminance {:.2g}{}{}", mean,
                        remedies.empty() ? "" : "; ", fmt::join(remedies, ", "))});
 }
 
-/// Says so when most of what is lit comes out white, as by lamps whose candelas or lux are true to life.
+/// Says so when most of what is lit comes out white in a .png or .jpg, as by lamps whose candelas or lux are
+/// true to life.
 void warn_if_white(double typical, const RenderFlags& flags, NoticeLog& log) {
-  constexpr double white = 8, gray = 0.18;
-  if (typical * std::exp2(flags.display.exposure) < white) return;
+  constexpr double white = 8;
+  if (!has_display_output(flags) || typical * std::exp2(flags.display.exposure) < white) return;
   log.add({Notice::Severity::warning,
            {},
            fmt::format(
                "most of what is lit comes out white, its luminance about {:.2g}; --exposure {:.0f} darkens "
                "a .png or .jpg",
-               typical, std::round(std::log2(gray / typical)))});
+               typical, std::round(exposure_to_gray(typical)))});
 }
 
 }  // namespace

@@ -65,10 +65,10 @@ void add_preview_flags(CLI::App& command, RunFlags& flags) {
   command.add_flag("--draft", flags.draft,
                    "a look at it: --spp 8 --denoise nlm --texture-filter mip, unless others are given");
   command
-      .add_option("--write-every", flags.write_every,
-                  "write the picture so far while rendering, first at once and then this often: 2s, 1m, "
-                  "never (2s on a "
-                  "terminal)")
+      .add_option(
+          "--write-every", flags.write_every,
+          "write the picture so far as soon as all pixels have samples, and then this often: 2s, 1m, never "
+          "(2s on a terminal)")
       ->check(parsed_by(parse_interval))
       ->type_name("TIME");
   command

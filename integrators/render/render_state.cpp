@@ -28,8 +28,14 @@ uint64_t accepted_samples(const Film& film) {
 
 }  // namespace
 
+void reconstruct(RenderState& state) {
+  if (state.gradients.empty() || state.reconstructed_samples == state.partial.samples) return;
+  state.gradients.reconstruct(state.partial.film);
+  state.reconstructed_samples = state.partial.samples;
+}
+
 ErrorEstimate estimate_error(RenderState& state) {
-  if (!state.gradients.empty()) state.gradients.reconstruct(state.partial.film);
+  reconstruct(state);
   return estimate_error(state.partial.film);
 }
 

@@ -71,6 +71,7 @@ struct RenderState {
   std::array<SampleStatistics, Film::halves> guides;  ///< empty without adaptive sampling
   SamplesDrawn drawn;                                 ///< which samples come next
   GradientFilm gradients;                             ///< of integrators that estimate them; else empty
+  uint64_t reconstructed_samples = 0;                 ///< of which the film's correction is made
   std::vector<TileLight> light;                       ///< by tile, of the samples that all pixels get alike
   uint32_t completed_spp = 0;                         ///< samples a pixel of all complete passes
   uint32_t last_checked_spp = 0;                      ///< `completed_spp` when the error was last estimated
@@ -79,7 +80,10 @@ struct RenderState {
   uint64_t light_batches = 0;           ///< of light paths (render/light_pass.h) that are done
 };
 
-/// The error of what there is, reconstructed first where there are gradients.
+/// Where there are gradients, brings the film up to date with its samples: the correction that it has is of
+/// those that there were when it was last made.
+void reconstruct(RenderState& state);
+/// The error of what there is, reconstructed first.
 ErrorEstimate estimate_error(RenderState& state);
 
 /// Of tiles whose samples are spread evenly over their pixels, to which the light paths of a film add theirs.

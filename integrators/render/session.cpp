@@ -236,8 +236,7 @@ RenderStatus RenderSession::status() const {
 
 LayeredImage RenderSession::picture(const std::string& layers) const {
   const Use use(state_->user);
-  // What has been rendered since the error was last looked at is in the film, but not in its correction.
-  if (!state_->render.gradients.empty()) state_->render.gradients.reconstruct(state_->render.partial.film);
+  reconstruct(state_->render);
   const RenderResult& partial = state_->render.partial;
   const RenderSettings& settings = state_->settings;
   LayeredImage picture = with_layers(partial, find_layers(layers), *state_->scene, state_->camera, settings,

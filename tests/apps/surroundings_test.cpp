@@ -152,9 +152,23 @@ TEST(Surroundings, WhatComesOutWhiteIsToldWithTheExposureThatMendsIt) {
   const test::TemporaryFolder folder;
   const std::string blazing = triangle_scene(folder, R"({"emissiveFactor": [1, 1, 1],
     "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 200}}})");
-  EXPECT_THAT(rendered(folder, blazing).result.err, AllOf(HasSubstr("white"), HasSubstr("--exposure -10")));
-  EXPECT_THAT(rendered(folder, blazing, {"--exposure", "-10"}).result.err, Not(HasSubstr("white")));
-  EXPECT_THAT(rendered(folder, triangle_scene(folder, glowing)).result.err, Not(HasSubstr("white")));
+  const std::vector<std::string> shown{"-o", folder.file("out.png")};
+  EXPECT_THAT(rendered(folder, blazing, shown).result.err,
+              AllOf(HasSubstr("white"), HasSubstr("--exposure -10")));
+  EXPECT_THAT(rendered(folder, blazing, {shown[0], shown[1], "--exposure", "-10"}).result.err,
+              Not(HasSubstr("white")));
+  EXPECT_THAT(rendered(folder, triangle_scene(folder, glowing), shown).result.err, Not(HasSubstr("white")));
+  // With no exposure that the flag does not take, and not of files that have room for it.
+  const std::string scene = triangle_scene(folder, R"({"emissiveFactor": [1, 1, 1],
+    "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 1e38}}})");
+  const std::vector<std::string> flags{"render", scene, "--spp", "2", "--size", "16x16", "-o"};
+  const auto told = [&](const std::string& file) {
+    std::vector<std::string> all = flags;
+    all.push_back(folder.file(file));
+    return run_vernier(all).err;
+  };
+  EXPECT_THAT(told("a.png"), HasSubstr("--exposure -100 darkens"));
+  EXPECT_THAT(told("a.exr"), Not(HasSubstr("white")));
 }
 
 TEST(Surroundings, WhatTheStudioDoesNotLightIsTold) {

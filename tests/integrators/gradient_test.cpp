@@ -77,8 +77,7 @@ double p_value(const std::array<Samples, 3>& excess) {
 }
 
 TEST(Gradient, DifferencesAreThoseOfTheLightInRandomScenes) {
-  const char* asked = std::getenv("VERNIER_RANDOM_SCENES");
-  const uint64_t count = asked ? std::strtoull(asked, nullptr, 10) : 64 / thinning;
+  const uint64_t count = asked_or("VERNIER_RANDOM_SCENES", 64 / thinning);
   const double significance = sidak(1e-3, count * 2 * 2);
   std::mutex mutex;
   parallel_for(count, [&](size_t k) {

@@ -76,8 +76,7 @@ std::string written(const RandomScene& random, uint64_t seed) {
 }
 
 TEST(RandomScenes, TechniquesAgree) {
-  const char* asked = std::getenv("VERNIER_RANDOM_SCENES");
-  const uint64_t count = asked ? std::strtoull(asked, nullptr, 10) : 240 / thinning;
+  const uint64_t count = asked_or("VERNIER_RANDOM_SCENES", 240 / thinning);
   const double significance = sidak(1e-3, count * 2 * std::size(others));
   std::mutex mutex;
   parallel_for(count, [&](size_t k) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <cstdlib>
+
 // How hard the long statistical tests try. The sanitized build looks for bad memory accesses and undefined
 // behaviour, which show in any sample, and runs many times slower: there those tests draw fewer samples and
 // ask for a coarser agreement, as much as that many samples resolve.
@@ -16,5 +19,11 @@ constexpr int thinning = 1;
 /// Multiplies the smallest error they find: the square root of the thinning.
 constexpr double coarsening = 1;
 #endif
+
+/// The number in the environment variable, which asks for more than tests usually do; without it, `usual`.
+inline uint64_t asked_or(const char* variable, uint64_t usual) {
+  const char* asked = std::getenv(variable);
+  return asked ? std::strtoull(asked, nullptr, 10) : usual;
+}
 
 }  // namespace vernier::test
