@@ -95,7 +95,7 @@ VisibleLight visible_light(const Scene& scene, const Camera& camera, int width, 
     shown += is_lit || pixel.emitted >= faint * float(pixel.covered);
   }
   if (covered == 0) return {};
-  return {float(lit) / float(covered), float(shown) / float(covered)};
+  return {float(lit) / float(covered), float(shown) / float(covered), !scene.lights().delta_lights().empty()};
 }
 
 PictureLight picture_light(const Film& film, const Scene& scene, const Camera& camera,
@@ -121,7 +121,9 @@ PictureLight picture_light(const Film& film, const Scene& scene, const Camera& c
   return light;
 }
 
-bool is_dark(const VisibleLight& light) { return light.lit < 1.0f / 3 && light.shown < 0.5f; }
+bool is_dark(const VisibleLight& light) {
+  return light.lit < (light.has_lamps ? 0.1f : 1.0f / 3) && light.shown < 0.5f;
+}
 
 bool is_dark(const Scene& scene, const RenderSettings& settings) {
   if (scene.lights().size() == 0) return true;

@@ -14,6 +14,7 @@ struct VisibleLight {
   float lit = 0;
   /// Those, and the ones that shine of themselves at least as brightly as that would make a white surface.
   float shown = 0;
+  bool has_lamps = false;  ///< there are lights that no ray meets: points, spots, suns
 };
 
 /// Path traced on a coarse grid: a few thousand paths with numbers of their own, so that the answer depends
@@ -21,9 +22,10 @@ struct VisibleLight {
 VisibleLight visible_light(const Scene& scene, const Camera& camera, int width, int height);
 
 /// Whether most of a picture would be black: light from elsewhere reaches less than a third of what the
-/// camera sees, and less than half of it is shown at all. A glowing display lights little else and leaves its
-/// model dark, and so does a lamp behind it; a lamp in the night lights more than that (rooms and streets of
-/// lamps have 0.7 to 1 of what is seen lit), and a model whose colours are all emitted needs no light.
+/// camera sees, or where somebody has placed lamps less than a tenth, and less than half of it is shown at
+/// all. A glowing display lights little else and leaves its model dark; a lamp in the night or over a stage
+/// is meant to (rooms and streets of lamps have 0.7 to 1 of what is seen lit), and a model whose colours are
+/// all emitted needs no light.
 bool is_dark(const VisibleLight& light);
 
 /// Luminance of a rendered picture over the pixels whose centres see a surface, or over all where none does;

@@ -52,12 +52,23 @@ TEST(VisibleLight, AGlowingDisplayLeavesItsModelDark) {
   EXPECT_GT(light.shown, 0);
 }
 
-TEST(VisibleLight, ALampBehindABodyLeavesItDark) {
+TEST(VisibleLight, APanelBehindABodyLeavesItDark) {
   SceneBuilder builder = body();
-  builder.add(lamp(PunctualLightDescription::Kind::point, 100, {3, 2, -1}));
+  builder.add(parallelogram({2.5f, 1.5f, -1.5f}, {0, 0, 1}, {0, 1, 0}), emitter(50));
   const VisibleLight light = seen(builder.build());
   EXPECT_GT(light.lit, 0.1f);
   EXPECT_TRUE(is_dark(light)) << light.lit;
+}
+
+TEST(VisibleLight, ASpotOnAStageIsEnough) {
+  SceneBuilder builder = body();
+  PunctualLightDescription spot = lamp(PunctualLightDescription::Kind::spot, 10, {0, 0, 4});
+  spot.inner_cone = 0.1f;
+  spot.outer_cone = 0.12f;
+  builder.add(spot);
+  const VisibleLight light = seen(builder.build());
+  EXPECT_LT(light.lit, 0.3f);
+  EXPECT_FALSE(is_dark(light)) << light.lit;
 }
 
 TEST(VisibleLight, ALampInTheNightIsEnough) {
