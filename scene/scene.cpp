@@ -71,11 +71,12 @@ Scene::Scene(SceneDescription description, const SceneOptions& options)
   compile_materials(description);
   if (std::any_of(materials_.begin(), materials_.end(), [](const Material& m) { return !m.is_opaque(); }))
     coverage_.emplace(geometry_, materials_, material_of_instance_);
+  const Geometry geometry = accelerated_geometry();
   const auto& entry = options.accelerator.empty()
-                          ? accelerators().front()
+                          ? quickest_accelerator(geometry)
                           : find_by_name(accelerators(), "accelerator", options.accelerator);
   accelerator_name_ = entry.name;
-  accelerator_ = entry.build(accelerated_geometry());
+  accelerator_ = entry.build(geometry);
   collect_lights(description);
 }
 

@@ -61,12 +61,28 @@ inline Mask4 signs_of(const Float4& x) {
 inline Float4 flipped(const Float4& x, const Mask4& signs) {
   return std::bit_cast<Float4>(std::bit_cast<Mask4>(x) ^ signs);
 }
+inline Mask8 signs_of(const Float8& x) {
+  return std::bit_cast<Mask8>(x) & std::numeric_limits<int32_t>::min();
+}
+inline Float8 flipped(const Float8& x, const Mask8& signs) {
+  return std::bit_cast<Float8>(std::bit_cast<Mask8>(x) ^ signs);
+}
 inline Float4 magnitude(const Float4& x) { return flipped(x, signs_of(x)); }
 
 /// `a` where it is the greater, else `b`: a NaN in `a` gives `b`.
 inline void keep_greater(const Float8& a, Float8& b) { b = a > b ? a : b; }
 /// `a` where it is the smaller, else `b`: a NaN in `a` gives `b`.
 inline void keep_smaller(const Float8& a, Float8& b) { b = a < b ? a : b; }
+
+/// a b + c, rounded once where the processor can and else twice.
+inline Float8 multiply_add(const Float8& a, float b, const Float8& c) {
+#ifdef __FMA__
+  return std::bit_cast<Float8>(
+      _mm256_fmadd_ps(std::bit_cast<__m256>(a), _mm256_set1_ps(b), std::bit_cast<__m256>(c)));
+#else
+  return a * b + c;
+#endif
+}
 
 inline Float8 square_root(const Float8& x) {
 #ifdef __AVX__

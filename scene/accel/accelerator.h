@@ -20,11 +20,12 @@ namespace vernier {
 struct RawHit {
   float t = 0, u = 0, v = 0;
   uint32_t instance = 0, primitive = 0;
+
+  TriangleId triangle() const { return {instance, primitive}; }
 };
 
-/// Whether the hit is on the triangle that the ray starts on or aims at, and must be ignored.
-inline bool is_endpoint_triangle(const Ray& ray, const RawHit& hit) {
-  const TriangleId met{hit.instance, hit.primitive};
+/// Whether that is the triangle that the ray starts on or aims at, whose hits must be ignored.
+inline bool is_endpoint_triangle(const Ray& ray, const TriangleId& met) {
   return met == ray.origin_triangle || met == ray.target_triangle;
 }
 
@@ -109,7 +110,10 @@ struct AcceleratorEntry {
   bool for_study = false;  ///< to compare with and to test, of no use to render with
 };
 
-/// All accelerators, the default first (scene/accel/registry.cpp).
+/// All accelerators (scene/accel/registry.cpp).
 std::span<const AcceleratorEntry> accelerators();
+
+/// The default: what answers soonest for a geometry.
+const AcceleratorEntry& quickest_accelerator(const Geometry& geometry);
 
 }  // namespace vernier

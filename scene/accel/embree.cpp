@@ -85,7 +85,8 @@ void filter_hit(const RTCFilterFunctionNArguments* args) {
 /// Lets occlusion queries pass the triangles at the ends of the ray.
 void pass_ends(const RTCFilterFunctionNArguments* args) {
   const auto& query = *reinterpret_cast<const Query*>(args->context);
-  if (args->valid[0] == -1 && is_endpoint_triangle(*query.ray, raw_hit(*args, query))) args->valid[0] = 0;
+  if (args->valid[0] == -1 && is_endpoint_triangle(*query.ray, raw_hit(*args, query).triangle()))
+    args->valid[0] = 0;
 }
 
 /// The same, and keeps hits on clear instances while it lets the ray pass them.
@@ -93,7 +94,7 @@ void pass_clear(const RTCFilterFunctionNArguments* args) {
   if (args->valid[0] != -1) return;
   const auto& query = *reinterpret_cast<const Query*>(args->context);
   const RawHit hit = raw_hit(*args, query);
-  const bool at_end = is_endpoint_triangle(*query.ray, hit);
+  const bool at_end = is_endpoint_triangle(*query.ray, hit.triangle());
   if (!at_end && !(*query.clear)[hit.instance]) return;
   if (!at_end) query.collected->push_back(hit);
   args->valid[0] = 0;
@@ -104,7 +105,7 @@ void collect_hit(const RTCFilterFunctionNArguments* args) {
   if (args->valid[0] != -1) return;
   const auto& query = *reinterpret_cast<const Query*>(args->context);
   const RawHit hit = raw_hit(*args, query);
-  if (!is_endpoint_triangle(*query.ray, hit)) query.collected->push_back(hit);
+  if (!is_endpoint_triangle(*query.ray, hit.triangle())) query.collected->push_back(hit);
   args->valid[0] = 0;
 }
 
@@ -196,7 +197,7 @@ inline std::optional<RawHit> EmbreeAccelerator::closest(const ScaledRay& scaled,
     intersect(scene_.get(), rayhit, query);
     if (rayhit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     const RawHit hit = raw_hit(rayhit.ray.tfar * scaled.t_scale, rayhit.hit);
-    if (!is_endpoint_triangle(world, hit)) return hit;
+    if (!is_endpoint_triangle(world, hit.triangle())) return hit;
     // So rare that going on from there costs less than a filter, which would be called for every hit.
     // A rounded t may be no larger than t_min, yet there must be an end.
     t_min = std::max(rayhit.ray.tfar, next_float_up(t_min));

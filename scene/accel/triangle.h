@@ -75,10 +75,10 @@ struct ShearedTriangle {
 /// double. triangle_block.h has the same operations on four triangles.
 inline std::optional<TriangleHit> intersect_watertight(const ShearedRay& ray, const Vec3f& v0,
                                                        const Vec3f& v1, const Vec3f& v2) {
-  const auto sheared = [&](const Vec3f& vertex) {
-    const Vec3f v = vertex - ray.origin;
-    const float z = v[ray.kz];
-    return Vec3f(v[ray.kx] - ray.sx * z, v[ray.ky] - ray.sy * z, z);
+  const float ox = ray.origin[ray.kx], oy = ray.origin[ray.ky], oz = ray.origin[ray.kz];
+  const auto sheared = [&](const Vec3f& v) {
+    const float z = v[ray.kz] - oz;
+    return Vec3f((v[ray.kx] - ox) - ray.sx * z, (v[ray.ky] - oy) - ray.sy * z, z);
   };
   return ShearedTriangle{sheared(v0), sheared(v1), sheared(v2)}.hit(ray.dz);
 }

@@ -54,7 +54,7 @@ class Settings(TypedDict, total=False):
     cutoff: float
     """whitted: rays that would bring less than this are not traced (0.001)."""
     accelerator: str
-    """"embree" or "bvh" ("embree")."""
+    """"embree", "bvh" or "list" (the quickest for the scene)."""
     filter: str
     """"box", "gaussian" or "blackman-harris", with ":WIDTH" in pixels if it is not to be the usual one ("box")."""
     texture_filter: str
