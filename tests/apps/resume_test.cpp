@@ -161,7 +161,7 @@ TEST_F(ResumeCommand, AnotherRenderIsRefused) {
       {{"--integrator", "whitted"}, "integrator was path, is whitted"},
       {{"--max-depth", "3"}, "max-depth was 16, is 3"},
       {{"--crop", "8x8+1+2"}, "crop was none, is 8x8+1+2"},
-      {{"--accelerator", "bvh"}, "accelerator was embree, is bvh"}};
+      {{"--accelerator", "bvh"}, "accelerator was list, is bvh"}};
   for (const auto& [flags, expected] : cases) {
     std::vector<std::string> more = flags;
     more.insert(more.end(), {"--spp", "4", "--resume", ckpt_, "-q"});
