@@ -17,9 +17,9 @@ T interpolate(const std::vector<T>& values, const Triangle& triangle, float u, f
 /// Embree reads four floats a vertex.
 void pad(std::vector<Vec3f>& positions) { positions.reserve(positions.size() + 2); }
 
-/// Coordinates of what moves are zero where they are next to it. Embree's builder for motion halves sums of
-/// them twice by different ways and takes the results for equal to the bit, which they are unless the halves
-/// are too small for normal numbers: then it writes beyond its bins. Multiples of 2^-119, as all that is left
+/// Coordinates of what moves become zero where they are next to it. Embree 3.13's builder for motion asserts
+/// that centers of triangles lie within the bounds of all centers, to the bit; with coordinates of 2^-125
+/// they did not, presumably since halves are no longer exact there. Multiples of 2^-119, as all that is left
 /// here is, can be halved seven times.
 void round_least_to_zero(std::vector<Vec3f>& positions) {
   constexpr float least = 0x1p-96f;
