@@ -14,7 +14,7 @@ COMMENTS = {
     (".css",): ("/* ", " */"),
     (".py", ".sh", ".cmake", ".yml", ".yaml", "CMakeLists.txt", "Containerfile", "Doxyfile", ".ci/run", ".ci/check_format",
      ".ci/test_sanitized", "tests/fuzz/run", "tests/farm/slurm", "tests/blender/run", "tests/rivals/run",
-     "apps/blender/make_zip", "apps/rivals/rivals", ".toml"):
+     "apps/blender/make_zip", "apps/rivals/rivals", "docs/pictures/make_khronos_models", ".toml"):
         ("# ", ""),
 }
 

@@ -17,6 +17,17 @@ T interpolate(const std::vector<T>& values, const Triangle& triangle, float u, f
 /// Embree reads four floats a vertex.
 void pad(std::vector<Vec3f>& positions) { positions.reserve(positions.size() + 2); }
 
+/// Coordinates of what moves become zero where they are next to it. Embree 3.13's builder for motion asserts
+/// that centers of triangles lie within the bounds of all centers, to the bit; with coordinates of 2^-125
+/// they did not, presumably since halves are no longer exact there. Multiples of 2^-119, as all that is left
+/// here is, can be halved seven times.
+void round_least_to_zero(std::vector<Vec3f>& positions) {
+  constexpr float least = 0x1p-96f;
+  for (Vec3f& p : positions)
+    for (int axis = 0; axis < 3; ++axis)
+      if (std::abs(p[axis]) < least) p[axis] = 0;
+}
+
 Vec3f xyz(const Vec4f& v) { return {v.x, v.y, v.z}; }
 
 /// The point of a triangle in the space of its mesh, its vertices known to within rounding of `roundings`
@@ -90,7 +101,10 @@ SceneGeometry::SceneGeometry(std::vector<MeshDescription> meshes,
   extents_.resize(meshes_.size());
   parallel_for(meshes_.size(), [&](size_t i) {
     pad(meshes_[i].positions);
-    for (MeshShape& shape : meshes_[i].moments) pad(shape.positions);
+    for (MeshShape& shape : meshes_[i].moments) {
+      round_least_to_zero(shape.positions);
+      pad(shape.positions);
+    }
     extents_[i] = MeshExtent(meshes_[i].positions, meshes_[i].triangles);
   });
   middle_bounds_.resize(instances_.size());

@@ -94,12 +94,15 @@ class MemoryInput {
 
   bool has_sixteen_bits() const { return input_->spec().format == OIIO::TypeDesc::UINT16; }
 
+  /// In the file's own type, which T must be.
   template <typename T>
   BasicImage<T> read() {
     const OIIO::ImageSpec spec = input_->spec();
     BasicImage<T> image(spec.width, spec.height, spec.nchannels);
     input_->threads(1);  // callers decode many images at once
-    if (!input_->read_image(0, 0, 0, spec.nchannels, OIIO::BaseTypeFromC<T>::value, image.values.data()))
+    // read_image would take 64 MB beside the picture, however small it is, to convert what needs no
+    // conversion.
+    if (!input_->read_native_scanlines(0, 0, spec.y, spec.y + spec.height, 0, image.values.data()))
       throw input_error(name_, fmt::format("cannot decode image, it is damaged: {}", input_->geterror()));
     return image;
   }
@@ -186,8 +189,7 @@ void check_image_size(const std::string& name, int64_t width, int64_t height, in
 Image decode_image(std::span<const uint8_t> bytes, const ImageHeader& header, const std::string& name,
                    const ImageLimits& limits) {
   check_whole(bytes, header, name, limits);
-  if (const auto coded = decode_directly(bytes, header, name, false)) return to_floats(*coded);
-  return MemoryInput(bytes, header, name, false).read<float>();
+  return to_floats(decode(bytes, header, name, false));
 }
 
 PartialImage decode_partial_image(std::span<const uint8_t> bytes, const std::string& name,

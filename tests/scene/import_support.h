@@ -78,10 +78,11 @@ struct GltfFile {
     return folder.write(name, complete.dump());
   }
 
-  /// As the bytes of a .glb.
+  /// As the bytes of a .glb, whose binary chunk is the buffer.
   std::string glb() const {
     nlohmann::json complete = json;
-    if (!buffer.empty()) complete["buffers"] = {{{"byteLength", buffer.size()}}};
+    if (!buffer.empty() && !complete.contains("buffers"))
+      complete["buffers"] = {{{"byteLength", buffer.size()}}};
     std::string text = complete.dump(), binary = buffer;
     text.resize((text.size() + 3) / 4 * 4, ' ');
     binary.resize((binary.size() + 3) / 4 * 4, '\0');
