@@ -106,6 +106,7 @@ TriangleLight::TriangleLight(EmissiveMesh& mesh, uint32_t primitive)
 }
 
 LightShape TriangleLight::shape_at(float time) const {
+  if (const LightShape* const ready = ready_shape()) return *ready;
   const SceneGeometry& geometry = *mesh_->geometry_;
   const PlacedTriangle own = geometry.placed_triangle(mesh_->instance_, primitive_, time);
   const auto& [a, b, c] = own.corners;
