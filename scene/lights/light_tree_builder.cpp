@@ -21,9 +21,9 @@ bool split_one(Ranges& ranges) {
   for (auto range = ranges.begin(); range != ranges.end(); ++range)
     if (range->size() > 1 && (widest == ranges.end() || range->unknown > widest->unknown)) widest = range;
   if (widest == ranges.end()) return false;
-  auto [below, above] = split(*widest);
-  *widest = std::move(below);
-  ranges.push_back(std::move(above));
+  const auto [below, above] = split(*widest);
+  *widest = below;
+  ranges.push_back(above);
   return true;
 }
 
