@@ -30,6 +30,26 @@ void round_least_to_zero(std::vector<Vec3f>& positions) {
 
 Vec3f xyz(const Vec4f& v) { return {v.x, v.y, v.z}; }
 
+/// Operations between the vertices that a mesh stores and a point of it.
+constexpr int vertex_roundings = 7;
+
+/// Triangle tests find t from the vertices as seen from the origin, so they round by the triangle's size even
+/// where the point's own coordinates, and so their rounding, are zero. This much along the normal, of any
+/// length; `extent`: how far a corner lies off along an axis.
+[[gnu::always_inline]] inline Vec3f test_error(float extent, const Vec3f& normal) {
+  const Vec3f n = abs(normal);
+  const float normal_share = length(n) / std::max(n.x + n.y + n.z, std::numeric_limits<float>::min());
+  return Vec3f(gamma_bound(8) * extent * normal_share);
+}
+
+/// Rounding of the local point is carried through the map, and the map's own four products and sums added;
+/// the vertices that the accelerator compares against go through the inverse of the same map, hence the
+/// double share.
+[[gnu::always_inline]] inline Vec3f mapped_error(const Transform& map, const Vec3f& error,
+                                                 const Vec3f& magnitude) {
+  return map.absolute_point(error, 0) + map.absolute_point(magnitude, 1) * (2 * gamma_bound(4));
+}
+
 /// The point of a triangle in the space of its mesh, its vertices known to within rounding of `roundings`
 /// operations on `magnitudes`.
 [[gnu::always_inline]] inline SurfacePoint point_of(const std::array<Vec3f, 3>& corners,
@@ -44,13 +64,9 @@ Vec3f xyz(const Vec4f& v) { return {v.x, v.y, v.z}; }
   point.position = p0 * w + p1 * point.u + p2 * point.v;
   point.error = (m0 * std::abs(w) + m1 * std::abs(point.u) + m2 * std::abs(point.v)) * gamma_bound(roundings);
   point.ng = cross(p1 - p0, p2 - p0);
-  // Triangle tests find t from the vertices as seen from the origin, so they round by the triangle's size
-  // even where the point's own coordinates, and so their rounding, are zero. This much along the normal.
   const float extent =
       max_component(max(abs(p0 - point.position), max(abs(p1 - point.position), abs(p2 - point.position))));
-  const Vec3f n = abs(point.ng);
-  const float normal_share = length(n) / std::max(n.x + n.y + n.z, std::numeric_limits<float>::min());
-  point.error = max(point.error, Vec3f(gamma_bound(8) * extent * normal_share));
+  point.error = max(point.error, test_error(extent, point.ng));
   return point;
 }
 
@@ -66,7 +82,7 @@ Vec3f xyz(const Vec4f& v) { return {v.x, v.y, v.z}; }
     corners[k] = between(a, b, part);
     magnitudes[k] = between(abs(a), abs(b), part);
   }
-  return point_of(corners, magnitudes, 7 + 2 * 3, barycentrics);
+  return point_of(corners, magnitudes, vertex_roundings + 2 * 3, barycentrics);
 }
 
 }  // namespace
@@ -187,6 +203,28 @@ std::array<Vec3f, 3> SceneGeometry::triangle(uint32_t instance, uint32_t primiti
   return corners;
 }
 
+// The bound of a point is linear in the barycentrics, so it is largest at a corner.
+PlacedTriangle SceneGeometry::placed_triangle(uint32_t instance, uint32_t primitive, float time) const {
+  const Instance& placed = instances_[instance];
+  if (placed.moves) [[unlikely]] {
+    const auto error = [&](const Vec2f& corner) {
+      return surface_point(instance, primitive, corner, time).error;
+    };
+    return {triangle(instance, primitive, time), max(error({0, 0}), max(error({1, 0}), error({0, 1})))};
+  }
+  std::array<Vec3f, 3> corners = mesh_triangle(instance, primitive);
+  const auto& [a, b, c] = corners;
+  const Vec3f magnitude = max(abs(a), max(abs(b), abs(c)));
+  const float extent = max_component(max(a, max(b, c)) - min(a, min(b, c)));
+  Vec3f error = max(magnitude * gamma_bound(vertex_roundings), test_error(extent, cross(b - a, c - a)));
+  if (!placed.is_identity) {
+    error = mapped_error(placed.to_world, error, magnitude);
+    for (Vec3f& corner : corners) corner = placed.to_world.point(corner);
+    if (placed.orientation < 0) std::swap(corners[1], corners[2]);
+  }
+  return {corners, error};
+}
+
 SurfacePoint SceneGeometry::surface_point(uint32_t instance, uint32_t primitive,
                                           const Vec2f& barycentrics) const {
   return surface_point(instance, primitive, barycentrics, middle_of_shutter);
@@ -203,19 +241,14 @@ SurfacePoint SceneGeometry::surface_point(uint32_t instance, uint32_t primitive,
   } else {
     const Vec3f p0 = mesh.positions[indices[0]], p1 = mesh.positions[indices[1]],
                 p2 = mesh.positions[indices[2]];
-    point = point_of({p0, p1, p2}, {abs(p0), abs(p1), abs(p2)}, 7, barycentrics);
+    point = point_of({p0, p1, p2}, {abs(p0), abs(p1), abs(p2)}, vertex_roundings, barycentrics);
   }
   point.instance = instance;
   point.primitive = primitive;
   point.time = time;
   if (!placed.is_identity) {
-    // Rounding of the local point is carried through the map, and the map's own four products and sums added;
-    // the vertices that the accelerator compares against go through the inverse of the same map, hence the
-    // double share.
-    const Transform& m = placed.to_world;
-    point.error =
-        m.absolute_point(point.error, 0) + m.absolute_point(abs(point.position), 1) * (2 * gamma_bound(4));
-    point.position = m.point(point.position);
+    point.error = mapped_error(placed.to_world, point.error, abs(point.position));
+    point.position = placed.to_world.point(point.position);
     // On an inverse this keeps the side, also where the map mirrors and with that turns the winding.
     point.ng = placed.normal_inverse.transposed_vector(point.ng);
   }

@@ -13,6 +13,12 @@
 
 namespace vernier {
 
+/// A triangle in the world.
+struct PlacedTriangle {
+  std::array<Vec3f, 3> corners;  ///< counter-clockwise seen from its front
+  Vec3f error;                   ///< bound on that of each of its points, as SurfacePoint::error
+};
+
 /// The scene's triangles: meshes, their instances, and what lies at a point of one. A mesh with a single
 /// instance is moved into world space at construction, so that most scenes need one level only; so is what
 /// moves, to where it is at each of its moments. Where no time is given, it is the middle of the shutter.
@@ -56,6 +62,8 @@ class SceneGeometry {
   /// World-space corners of a triangle in winding order (counter-clockwise seen from its front).
   std::array<Vec3f, 3> triangle(uint32_t instance, uint32_t primitive) const;
   std::array<Vec3f, 3> triangle(uint32_t instance, uint32_t primitive, float time) const;
+  /// The same with what rounding may make of it, for lights that are looked at very often.
+  PlacedTriangle placed_triangle(uint32_t instance, uint32_t primitive, float time) const;
   /// Normals at these corners, world space, front side, of any length: between them it is those that are
   /// interpolated, and then made unit vectors. Empty where a mesh has none.
   std::optional<std::array<Vec3f, 3>> corner_normals(const SurfacePoint& point) const;

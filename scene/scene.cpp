@@ -4,15 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <map>
 
 #include "core/base/fingerprint.h"
 #include "core/base/names.h"
-#include "core/base/parallel.h"
 #include "scene/emission.h"
 #include "scene/lights/punctual.h"
-#include "scene/lights/triangle_light.h"
+#include "scene/lights/triangle_lights.h"
 #include "vernier/error.h"
 
 namespace vernier {
@@ -27,37 +25,6 @@ void note_without_volume(std::span<const InstanceDescription> instances, const s
   if (without.size() > 1) text += " (and " + std::to_string(without.size() - 1) + " more)";
   notices.push_back({Notice::Severity::warning, "KHR_materials_volume",
                      text + reason + ", so it has no inside: its surface is taken for thin-walled"});
-}
-
-/// The lights that one instance's triangles are, and by triangle the index of its own among them, -1 for
-/// none.
-std::vector<std::unique_ptr<TriangleLight>> triangle_lights(const SceneGeometry& geometry,
-                                                            const Material& material, uint32_t instance,
-                                                            std::vector<int32_t>& of_triangle) {
-  std::vector<std::unique_ptr<TriangleLight>> candidates(geometry.triangle_count(instance));
-  parallel_for(candidates.size(), [&](size_t primitive) {
-    auto light = std::make_unique<TriangleLight>(geometry, material, instance, uint32_t(primitive));
-    light->set_source({LightSource::Kind::instance, instance});
-    if (light->power({}) > 0) candidates[primitive] = std::move(light);
-  });
-  of_triangle.assign(candidates.size(), -1);
-  size_t count = 0;
-  for (size_t primitive = 0; primitive < candidates.size(); ++primitive) {
-    if (!candidates[primitive]) continue;
-    // The halves of a quad follow each other in what programs write.
-    const size_t next = primitive + 1;
-    const bool joined = next < candidates.size() && candidates[next] &&
-                        candidates[primitive]->try_merge_quad(*candidates[next]);
-    of_triangle[primitive] = int32_t(count);
-    if (joined) {
-      of_triangle[next] = int32_t(count);
-      candidates[next].reset();
-    }
-    if (count != primitive) candidates[count] = std::move(candidates[primitive]);
-    ++count;
-  }
-  candidates.resize(count);
-  return candidates;
 }
 
 }  // namespace
@@ -123,44 +90,21 @@ Geometry Scene::accelerated_geometry() const {
   return view;
 }
 
-std::vector<std::unique_ptr<Light>> Scene::collect_triangle_lights() {
-  std::vector<std::vector<std::unique_ptr<TriangleLight>>> of_instances(geometry_.instance_count());
-  triangle_lights_.resize(of_instances.size());
-  parallel_for(of_instances.size(), [&](size_t i) {
-    const Material& material = materials_[material_of_instance_[i]];
-    if (material.is_emissive() && !material.is_unlit())
-      of_instances[i] = triangle_lights(geometry_, material, uint32_t(i), triangle_lights_[i]);
-  });
-  std::vector<std::unique_ptr<Light>> lights;
-  for (size_t i = 0; i < of_instances.size(); ++i) {
-    for (int32_t& light : triangle_lights_[i])
-      if (light >= 0) light += int32_t(lights.size());
-    auto own = std::move(of_instances[i]);
-    std::move(own.begin(), own.end(), std::back_inserter(lights));
-  }
-  return lights;
-}
-
 void Scene::collect_lights(const SceneDescription& description) {
-  std::vector<std::unique_ptr<Light>> lights = collect_triangle_lights();
+  TriangleLights triangles = collect_triangle_lights(geometry_, materials_, material_of_instance_);
+  triangle_lights_ = std::move(triangles.of_triangle);
+  std::vector<std::unique_ptr<PunctualLight>> lamps;
   for (uint32_t i = 0; i < description.lights.size(); ++i) {
-    auto light = std::make_unique<PunctualLight>(description.lights[i]);
-    light->set_source({LightSource::Kind::lamp, i});
-    if (!(light->power(bounds()) > 0)) continue;
-    const PunctualLight& lamp = *light;
-    lights.push_back(std::move(light));
-    if (lamp.bounds()) lamps_.add(lamp, uint32_t(lights.size() - 1));
+    auto lamp = std::make_unique<PunctualLight>(description.lights[i], i);
+    if (!(lamp->power(bounds()) > 0)) continue;
+    const size_t index = triangles.lights.size() + lamps.size();
+    if (lamp->bounds()) lamps_.add(*lamp, uint32_t(index));
+    lamps.push_back(std::move(lamp));
   }
-  if (description.environment) add_environment(description.environment, lights);
+  lights_ = LightSet(std::move(triangles), std::move(lamps));
   moves_ = geometry_.moves() || std::any_of(description.lights.begin(), description.lights.end(),
                                             [](const auto& lamp) { return !lamp.moments.empty(); });
-  set_lights(std::move(lights));
-}
-
-void Scene::set_lights(std::vector<std::unique_ptr<Light>> lights) {
-  lights_ = LightSet(std::move(lights));
-  volumes_.find_dim_ones(clear_, materials_, material_of_instance_, lights_);
-  collect_ground_light();
+  set_environment(description.environment);
 }
 
 void Scene::collect_ground_light() {
@@ -168,25 +112,17 @@ void Scene::collect_ground_light() {
     ground_light_.emplace(environment_, lights_.delta_lights());
 }
 
-void Scene::add_environment(std::shared_ptr<const EnvironmentDescription> description,
-                            std::vector<std::unique_ptr<Light>>& lights) {
-  auto light = std::make_unique<EnvironmentLight>(std::move(description));
-  if (light->bad_texels() > 0)
+void Scene::set_environment(std::shared_ptr<const EnvironmentDescription> description) {
+  std::unique_ptr<EnvironmentLight> light;
+  if (description) light = std::make_unique<EnvironmentLight>(std::move(description));
+  if (light && light->bad_texels() > 0)
     notices_.push_back(
         {Notice::Severity::warning, "environment",
          std::to_string(light->bad_texels()) + " values are negative or not finite; taken as black"});
   environment_ = light.get();
-  environment_index_ = int32_t(lights.size());
-  lights.push_back(std::move(light));
-}
-
-void Scene::set_environment(std::shared_ptr<const EnvironmentDescription> description) {
-  auto lights = std::move(lights_).release();
-  if (environment_) lights.pop_back();  // it is always the last
-  environment_ = nullptr;
-  environment_index_ = -1;
-  if (description) add_environment(std::move(description), lights);
-  set_lights(std::move(lights));
+  lights_.set_environment(std::move(light));
+  volumes_.find_dim_ones(clear_, materials_, material_of_instance_, lights_);
+  collect_ground_light();
 }
 
 void Scene::fill_air(const Fog& fog) {
@@ -283,19 +219,20 @@ std::optional<LightSample> Scene::light_from(uint32_t light, const SurfacePoint&
 }
 
 LightEval Scene::emitted(const SurfacePoint* from, const Ray& ray, const SurfacePoint* hit) const {
-  int32_t index = environment_index_;
+  size_t index = lights_.size() - 1;  // of the environment, if there is one
   if (hit) {
     const Material& material = this->material(*hit);
     if (!material.is_emissive()) return {};
     const auto& of_triangle = triangle_lights_[hit->instance];
-    index = of_triangle.empty() ? -1 : of_triangle[hit->primitive];
-    if (index < 0 || !from) return {emission(geometry_, material, *hit, hit->front, -ray.direction), 0};
+    const int32_t light = of_triangle.empty() ? -1 : of_triangle[hit->primitive];
+    if (light < 0 || !from) return {emission(geometry_, material, *hit, hit->front, -ray.direction), 0};
+    index = size_t(light);
   } else {
     if (!environment_) return {};
     if (!from) return {environment_->radiance(ray.direction), 0};
   }
-  LightEval light = lights_[size_t(index)].eval(*from, ray.direction, hit);
-  light.pdf *= lights_.prob(receiver(*from), size_t(index));
+  LightEval light = lights_[index].eval(*from, ray.direction, hit);
+  light.pdf *= lights_.prob(receiver(*from), index);
   return light;
 }
 

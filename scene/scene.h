@@ -110,12 +110,8 @@ class Scene {
  private:
   LightReceiver receiver(const SurfacePoint& point) const;
   void compile_materials(const SceneDescription& description);
-  std::vector<std::unique_ptr<Light>> collect_triangle_lights();
   void collect_lights(const SceneDescription& description);
-  void set_lights(std::vector<std::unique_ptr<Light>> lights);
   void collect_ground_light();
-  void add_environment(std::shared_ptr<const EnvironmentDescription> description,
-                       std::vector<std::unique_ptr<Light>>& lights);
 
   std::string hash_, accelerator_name_;
   std::vector<std::pair<std::string, std::string>> choices_;
@@ -131,10 +127,9 @@ class Scene {
   std::unique_ptr<Accelerator> accelerator_;
   LightSet lights_;
   Lamps lamps_;
-  std::vector<std::vector<int32_t>>
-      triangle_lights_;  ///< by instance and triangle: index into lights_, -1 for none
+  /// By instance and triangle: index into lights_, -1 for none.
+  std::vector<std::vector<int32_t>> triangle_lights_;
   const EnvironmentLight* environment_ = nullptr;
-  int32_t environment_index_ = -1;
   Fog fog_;
   bool moves_ = false;
   std::optional<GroundLight> ground_light_;  ///< where some material catches shadows

@@ -22,6 +22,7 @@ class EnvironmentLight : public Light {
   std::optional<LightRay> emit(const Bounds& scene, const Vec2d& place, const Vec2f& direction,
                                float time) const override;
   float power(const Bounds& scene) const override;
+  LightSource source() const override { return {}; }
 
   /// Radiance arriving from the unit direction w.
   Rgb radiance(const Vec3f& w) const;

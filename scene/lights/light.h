@@ -81,11 +81,8 @@ class Light {
   /// Whether its samples are delta ones, always.
   virtual bool is_delta() const { return false; }
 
-  LightSource source() const { return source_; }
-  void set_source(LightSource source) { source_ = source; }
-
- private:
-  LightSource source_;
+  /// What it is part of.
+  virtual LightSource source() const = 0;
 };
 
 }  // namespace vernier

@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "core/sampling/distribution.h"
-#include "scene/lights/light.h"
 #include "scene/lights/light_tree.h"
+#include "scene/lights/punctual.h"
+#include "scene/lights/triangle_lights.h"
 
 namespace vernier {
 
@@ -17,10 +18,10 @@ class LightSet {
  public:
   LightSet() = default;
   /// A light of no power is never chosen.
-  explicit LightSet(std::vector<std::unique_ptr<Light>> lights);
+  LightSet(TriangleLights triangles, std::vector<std::unique_ptr<PunctualLight>> lamps);
 
-  /// Gives the lights back, in the order they came.
-  std::vector<std::unique_ptr<Light>> release() && { return std::move(lights_); }
+  /// Puts a light at infinity behind all others, in place of the one put there before, if any; null: none.
+  void set_environment(std::unique_ptr<Light> environment);
 
   struct Choice {
     const Light* light = nullptr;
@@ -34,19 +35,28 @@ class LightSet {
   /// Those that no ray meets: punctual ones.
   const std::vector<const Light*>& delta_lights() const { return delta_lights_; }
 
-  size_t size() const { return lights_.size(); }
-  const Light& operator[](size_t i) const { return *lights_[i]; }
+  /// Triangles, lamps, the environment.
+  size_t size() const { return triangles_.lights.size() + others_.size(); }
+  const Light& operator[](size_t i) const {
+    const size_t triangles = triangles_.lights.size();
+    if (i < triangles) return triangles_.lights[i];
+    return *others_[i - triangles];
+  }
 
  private:
   /// Probability that the tree chooses, by what its root may send to the receiver.
   double finite_share(const LightTree::Weights& root) const;
 
-  std::vector<std::unique_ptr<Light>> lights_;
+  void collect_infinite();
+
+  TriangleLights triangles_;
+  std::vector<std::unique_ptr<Light>> others_;
+  bool has_environment_ = false;
   std::vector<const Light*> delta_lights_;
   bool is_single_ = false;  ///< there is one light, and nothing to choose
   std::vector<const Light*> infinite_lights_;
   AliasTable infinite_;                 ///< over infinite_lights_, by irradiance
-  std::vector<int32_t> infinite_slot_;  ///< by light: index in infinite_lights_, or -1
+  std::vector<int32_t> infinite_slot_;  ///< of others_: index in infinite_lights_, or -1
   LightTree tree_;                      ///< over all others
 };
 

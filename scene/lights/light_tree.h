@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <span>
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "scene/lights/light_node.h"
@@ -16,8 +17,9 @@ namespace vernier {
 class LightTree {
  public:
   LightTree() = default;
-  /// bounds[i] belongs to light i; those of no power are never picked.
-  explicit LightTree(std::vector<LightBounds> bounds);
+  /// bounds_of(i), called from many threads, belongs to light i of `count`; those of no power are never
+  /// picked.
+  LightTree(size_t count, const std::function<LightBounds(size_t)>& bounds_of);
 
   /// What the parts of a node may send to a receiver, relative to each other, and all together; 0: nothing.
   struct Weights {
@@ -43,27 +45,13 @@ class LightTree {
   double prob(const LightReceiver& receiver, const Weights& root, uint32_t light) const;
 
  private:
-  struct BinaryNode {
-    LightBounds bounds;
-    uint32_t right = 0;  ///< the left child follows its parent; 0: leaf
-    uint32_t light = 0;
-    float unknown = 0;  ///< how little is known of what the group sends where
-  };
-  struct Place {
-    uint32_t node = 0, slot = LightNode::width;  ///< no slot: never picked
-  };
+  static constexpr uint32_t nowhere = UINT32_MAX;
 
   static Weights weigh(const LightNode& node, const LightReceiver& receiver);
-  /// Fills nodes[index] and those below, which follow it, with a tree over `lights`.
-  static void build(std::span<BinaryNode> nodes, size_t index, std::span<const LightBounds> bounds,
-                    std::span<uint32_t> lights, int depth);
-  static std::vector<uint32_t> members(std::span<const BinaryNode> binary, uint32_t root);
-  static size_t count_wide(std::span<const BinaryNode> binary, uint32_t root);
-  uint32_t widen(std::span<const BinaryNode> binary, uint32_t root, uint32_t parent, uint32_t slot);
 
   std::vector<LightNode> nodes_;
-  std::vector<Place> places_;  ///< by light
-  double power_ = 0;           ///< of all lights; the nodes hold parts of it
+  std::vector<uint32_t> places_;  ///< by light: the number of its node by a node's width, and its slot
+  double power_ = 0;              ///< of all lights; the nodes hold parts of it
 };
 
 }  // namespace vernier

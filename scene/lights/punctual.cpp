@@ -13,8 +13,9 @@ namespace vernier {
 
 using Kind = PunctualLightDescription::Kind;
 
-PunctualLight::PunctualLight(const PunctualLightDescription& d)
+PunctualLight::PunctualLight(const PunctualLightDescription& d, uint32_t number)
     : kind_(d.kind),
+      number_(number),
       place_{d.to_world.origin, normalize(-d.to_world.z)},
       intensity_(d.color * d.intensity),
       range_(d.range),

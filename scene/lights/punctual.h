@@ -11,7 +11,8 @@ namespace vernier {
 /// Point, spot or directional light of KHR_lights_punctual: a delta light, which no ray meets.
 class PunctualLight : public Light {
  public:
-  explicit PunctualLight(const PunctualLightDescription& description);
+  /// The description is that of this number among those of the scene.
+  explicit PunctualLight(const PunctualLightDescription& description, uint32_t number = 0);
 
   std::optional<LightSample> sample(const SurfacePoint& from, const Vec2d& u) const override;
   LightEval eval(const SurfacePoint& from, const Vec3f& wi, const SurfacePoint* on) const override;
@@ -20,6 +21,7 @@ class PunctualLight : public Light {
   float power(const Bounds& scene) const override;
   std::optional<LightBounds> bounds() const override;
   bool is_delta() const override { return true; }
+  LightSource source() const override { return {LightSource::Kind::lamp, number_}; }
 
   /// Where it is, and where spot and directional lights shine to.
   struct Place {
@@ -39,6 +41,7 @@ class PunctualLight : public Light {
   float spot_window(float cosine) const;
 
   PunctualLightDescription::Kind kind_;
+  uint32_t number_;
   Place place_;                 ///< in the middle of the shutter
   std::vector<Place> moments_;  ///< empty: it stands still
   Rgb intensity_;

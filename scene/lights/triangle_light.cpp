@@ -20,12 +20,18 @@ class TriangleLight::View {
  public:
   /// At a time of the shutter.
   View(const TriangleLight& light, const Vec3f& from, float time)
-      : light_(light), moved_(light.moments_ > 0 ? std::optional(light.shape_at(time)) : std::nullopt) {
-    const auto& [a, b, c] = shape().corners;
-    const std::optional<Vec3f>& opposite = shape().opposite;
-    is_dark_ = !light.material_->double_sided() && !(dot(from - a, shape().normal) > 0);
+      : light_(light),
+        found_(light.ready_shape() ? std::nullopt : std::optional(light.shape_at(time))),
+        shape_(found_ ? *found_ : *light.ready_shape()),
+        texture_(light.texture()) {
+    const auto& [a, b, c] = shape_.corners;
+    const std::optional<Vec3f>& opposite = shape_.opposite;
+    is_dark_ = !light.mesh_->material_->double_sided() && !(dot(from - a, shape_.normal) > 0);
+    if (is_dark_ || texture_) return;
     const Vec3f center = opposite ? (b + c) * 0.5f : (a + b + c) * (1 / 3.f);
-    if (is_dark_ || length_squared(center - from) > shape().near2) return;
+    float near2 = std::max({length_squared(b - a), length_squared(c - b), length_squared(a - c)});
+    if (opposite) near2 = std::max(near2, length_squared(*opposite - a));
+    if (length_squared(center - from) > near2) return;
     first_.emplace(a - from, b - from, c - from, doubled_area(a, b, c));
     solid_angle_ = first_->solid_angle();
     if (!opposite) return;
@@ -35,7 +41,10 @@ class TriangleLight::View {
     solid_angle_ += second_->solid_angle();
   }
 
-  const Shape& shape() const { return moved_ ? *moved_ : light_.shape_; }
+  View(const View&) = delete;
+  View& operator=(const View&) = delete;
+
+  const LightShape& shape() const { return shape_; }
 
   /// Whether it certainly sends no light here.
   bool is_dark() const { return is_dark_ || (first_ && solid_angle_ == 0); }
@@ -45,9 +54,9 @@ class TriangleLight::View {
   Vec2f sample(const Vec2f& u) const {
     if (!first_) {
       float pdf;
-      return light_.place_by_area(shape(), u, pdf);
+      return light_.place_by_area(shape_, u, pdf);
     }
-    if (!shape().opposite) return first_->sample(u);
+    if (!shape_.opposite) return first_->sample(u);
     const float share = first_->solid_angle() / solid_angle_;
     if (u.x < share) return first_->sample({u.x / share, u.y});
     const Vec2f other = second_->sample({(u.x - share) / (1 - share), u.y});
@@ -58,103 +67,118 @@ class TriangleLight::View {
   float pdf(const Vec2f& place, float distance2, float cosine) const {
     if (is_dark() || cosine == 0) return 0;
     if (first_) return 1 / solid_angle_;
-    const float by_area = distance2 / (cosine * shape().area);
-    return !light_.texture_ ? by_area : by_area * light_.texture_->pdf(invert_sample_triangle(place));
+    const float by_area = distance2 / (cosine * shape_.area);
+    return !texture_ ? by_area : by_area * texture_->pdf(invert_sample_triangle(place));
   }
 
  private:
   const TriangleLight& light_;
-  const std::optional<Shape> moved_;  ///< of a light that moves
+  const std::optional<LightShape> found_;  ///< unless it is ready
+  const LightShape& shape_;
+  const Distribution2D* const texture_;
   bool is_dark_ = false;
   std::optional<SphericalTriangle> first_, second_;  ///< of near lights
   float solid_angle_ = 0;
 };
 
-TriangleLight::TriangleLight(const SceneGeometry& geometry, const Material& material, uint32_t instance,
-                             uint32_t primitive)
-    : geometry_(&geometry),
-      material_(&material),
-      instance_(instance),
-      primitive_(primitive),
-      shape_(shape_at(middle_of_shutter)),
-      moments_(geometry.moments(instance)) {
+EmissiveMesh::EmissiveMesh(const SceneGeometry& geometry, const Material& material, uint32_t instance)
+    : geometry_(&geometry), material_(&material), instance_(instance), moments_(geometry.moments(instance)) {
   if (material.emits_evenly())
     even_ = {{material.emission({}, false, 1), material.emission({}, true, 1)}, material.coverage({})};
-  measure_emission();
+  else
+    textures_.resize(geometry.triangle_count(instance));
 }
 
-TriangleLight::Shape TriangleLight::shape_at(float time) const {
-  Shape shape;
-  shape.corners = geometry_->triangle(instance_, primitive_, time);
-  const auto& [a, b, c] = shape.corners;
-  shape.area = length(doubled_area(a, b, c)) / 2;
-  const SurfacePoint first = geometry_->surface_point(instance_, primitive_, {0, 0}, time);
-  shape.normal = first.ng;
-  shape.near2 =
-      texture_ ? 0 : std::max({length_squared(b - a), length_squared(c - b), length_squared(a - c)});
-  // The bound is linear in the barycentrics, so it is largest at a corner.
-  shape.error = max(first.error, max(geometry_->surface_point(instance_, primitive_, {1, 0}, time).error,
-                                     geometry_->surface_point(instance_, primitive_, {0, 1}, time).error));
+void EmissiveMesh::settle(std::span<const TriangleLight> lights, bool ready) {
+  if (std::all_of(textures_.begin(), textures_.end(), [](const auto& table) { return !table; }))
+    textures_ = decltype(textures_)();
+  if (!ready || moments_ > 0) return;
+  std::vector<LightShape> shapes;
+  shapes.reserve(lights.size());
+  for (const TriangleLight& light : lights) shapes.push_back(light.shape_at(middle_of_shutter));
+  first_ = lights.data();
+  shapes_ = std::move(shapes);
+}
+
+TriangleLight::TriangleLight(EmissiveMesh& mesh, uint32_t primitive)
+    : mesh_(&mesh), primitive_(primitive), opposite_(primitive) {
+  measure_emission(mesh);
+}
+
+LightShape TriangleLight::shape_at(float time) const {
+  if (const LightShape* const ready = ready_shape()) return *ready;
+  const SceneGeometry& geometry = *mesh_->geometry_;
+  const PlacedTriangle own = geometry.placed_triangle(mesh_->instance_, primitive_, time);
+  const auto& [a, b, c] = own.corners;
+  const Vec3f across = doubled_area(a, b, c);
+  const float doubled = length(across);
+  LightShape shape{own.corners, {}, doubled > 0 ? across / doubled : Vec3f(0, 0, 1), own.error, doubled / 2};
+  if (!is_joined()) return shape;
+  std::rotate(shape.corners.begin(), shape.corners.begin() + joint_.first, shape.corners.end());
+  const PlacedTriangle other = geometry.placed_triangle(mesh_->instance_, opposite_, time);
+  const auto& its = other.corners;
+  shape.opposite = its[joint_.across];
+  shape.error = max(shape.error, other.error);
+  shape.area += length(doubled_area(its[0], its[1], its[2])) / 2;
   return shape;
 }
 
-bool TriangleLight::try_merge_quad(const TriangleLight& other) {
-  if (!even_ || moments_ > 0 || shape_.opposite || other.shape_.opposite) return false;
+std::optional<TriangleLight::Joint> TriangleLight::joint(const TriangleLight& other) const {
+  if (!mesh_->even_ || mesh_->moments_ > 0) return std::nullopt;
+  const LightShape own = shape_at(middle_of_shutter), its = other.shape_at(middle_of_shutter);
   for (size_t i = 0; i < 3; ++i)
     for (size_t j = 0; j < 3; ++j) {
-      const auto& mine = shape_.corners;
-      const auto& its = other.shape_.corners;
-      const Vec3f a = mine[i], b = mine[(i + 1) % 3], c = mine[(i + 2) % 3];
-      const Vec3f d = its[j];
-      if (its[(j + 1) % 3] != c || its[(j + 2) % 3] != b) continue;
+      const Vec3f a = own.corners[i], b = own.corners[(i + 1) % 3], c = own.corners[(i + 2) % 3];
+      const Vec3f d = its.corners[j];
+      if (its.corners[(j + 1) % 3] != c || its.corners[(j + 2) % 3] != b) continue;
       const Vec3f off = abs((b - a) - (d - c));
       // No more than rounding of the corners explains.
-      const Vec3f tolerance = max(shape_.error, other.shape_.error);
-      if (!(off.x <= tolerance.x && off.y <= tolerance.y && off.z <= tolerance.z)) return false;
-      shape_ = {{a, b, c},
-                d,
-                shape_.normal,
-                tolerance,
-                shape_.area + other.shape_.area,
-                std::max({shape_.near2, other.shape_.near2, length_squared(d - a)})};
-      opposite_primitive_ = other.primitive_;
-      power_ += other.power_;
-      return true;
+      const Vec3f tolerance = max(own.error, its.error);
+      if (!(off.x <= tolerance.x && off.y <= tolerance.y && off.z <= tolerance.z)) return std::nullopt;
+      return Joint{uint8_t(i), uint8_t(j)};
     }
-  return false;
+  return std::nullopt;
 }
 
-Vec3f TriangleLight::Shape::at(const Vec2f& place) const {
+void TriangleLight::take_in(const TriangleLight& other, Joint joint) {
+  opposite_ = other.primitive_;
+  joint_ = joint;
+  power_ += other.power_;
+}
+
+Vec3f LightShape::at(const Vec2f& place) const {
   const auto& [a, b, c] = corners;
   const float rest = 1 - place.x - place.y;
   if (opposite && rest < 0) return *opposite * -rest + c * (1 - place.x) + b * (1 - place.y);
   return a * rest + b * place.x + c * place.y;
 }
 
-Vec2f TriangleLight::place_by_area(const Shape& shape, const Vec2f& u, float& pdf) const {
+Vec2f TriangleLight::place_by_area(const LightShape& shape, const Vec2f& u, float& pdf) const {
   pdf = 1 / shape.area;
   if (shape.opposite) return u;
-  if (!texture_) return sample_triangle(u);
+  const Distribution2D* const texture = this->texture();
+  if (!texture) return sample_triangle(u);
   float of_texture = 1;
-  const Vec2f place = sample_triangle(texture_->sample(u, of_texture));
+  const Vec2f place = sample_triangle(texture->sample(u, of_texture));
   pdf *= of_texture;
   return place;
 }
 
 TriangleId TriangleLight::triangle_at(const Vec2f& place) const {
-  return {instance_, shape_.opposite && place.x + place.y > 1 ? opposite_primitive_ : primitive_};
+  return {mesh_->instance_, is_joined() && place.x + place.y > 1 ? opposite_ : primitive_};
 }
 
 Rgb TriangleLight::emission(const Vec2f& barycentrics, float time, bool front, const Vec3f& wo) const {
-  if (even_) return even_->emission[front];
-  const SurfacePoint point = geometry_->surface_point(instance_, primitive_, barycentrics, time);
-  return vernier::emission(*geometry_, *material_, point, front, wo);
+  if (mesh_->even_) return mesh_->even_->emission[front];
+  const SurfacePoint point =
+      mesh_->geometry_->surface_point(mesh_->instance_, primitive_, barycentrics, time);
+  return vernier::emission(*mesh_->geometry_, *mesh_->material_, point, front, wo);
 }
 
 float TriangleLight::coverage(const Vec2f& barycentrics) const {
-  if (even_) return even_->coverage;
-  return vernier::coverage(*geometry_, *material_,
-                           geometry_->surface_point(instance_, primitive_, barycentrics));
+  if (mesh_->even_) return mesh_->even_->coverage;
+  return vernier::coverage(*mesh_->geometry_, *mesh_->material_,
+                           mesh_->geometry_->surface_point(mesh_->instance_, primitive_, barycentrics));
 }
 
 std::optional<LightSample> TriangleLight::sample(const SurfacePoint& from, const Vec2d& u) const {
@@ -171,7 +195,7 @@ std::optional<LightSample> TriangleLight::sample(const SurfacePoint& from, const
   const Rgb radiance = emission(place, from.time, cosine > 0, -wi) * coverage(place);
   const float pdf = view.pdf(place, distance2, std::abs(cosine));
   if (!(pdf > 0) || is_black(radiance)) return sample;
-  const Shape& shape = view.shape();
+  const LightShape& shape = view.shape();
   sample.emplace();
   sample->wi = wi;
   sample->radiance = radiance;
@@ -182,11 +206,11 @@ std::optional<LightSample> TriangleLight::sample(const SurfacePoint& from, const
 
 std::optional<LightRay> TriangleLight::emit(const Bounds& /*scene*/, const Vec2d& place,
                                             const Vec2f& direction, float time) const {
-  const Shape shape = moments_ > 0 ? shape_at(time) : shape_;
+  const LightShape shape = shape_at(time);
   float pdf;
   const Vec2f at_place = place_by_area(shape, to_float(place), pdf);
   // One side or, by the first number's halves, either.
-  const bool two_sided = material_->double_sided();
+  const bool two_sided = mesh_->material_->double_sided();
   const bool front = !two_sided || direction.x < 0.5f;
   const Vec2f u(two_sided ? 2 * direction.x - (front ? 0.f : 1.f) : direction.x, direction.y);
   const Vec3f local = sample_cosine_hemisphere(u);
@@ -212,13 +236,14 @@ LightEval TriangleLight::eval(const SurfacePoint& from, const Vec3f& wi, const S
 /// The normal of a triangle whose corners move at constant speed is a quadratic curve between two moments,
 /// within the cone of its three Bezier points (Farin 2002, "Curves and Surfaces for CAGD", 5th ed., 4.3).
 std::optional<LightBounds> TriangleLight::bounds() const {
-  if (moments_ == 0) return bounds_at(shape_);
+  const size_t moments = mesh_->moments_;
+  if (moments == 0) return bounds_at(shape_at(middle_of_shutter));
   LightBounds all;
-  for (size_t i = 0; i < moments_; ++i) {
-    const Shape shape = moment(i);
+  for (size_t i = 0; i < moments; ++i) {
+    const LightShape shape = moment(i);
     all = merge(all, bounds_at(shape));
     if (i == 0) continue;
-    const Shape before = moment(i - 1);
+    const LightShape before = moment(i - 1);
     const auto& [a0, b0, c0] = before.corners;
     const auto& [a1, b1, c1] = shape.corners;
     LightBounds between = bounds_at(shape);
@@ -231,38 +256,37 @@ std::optional<LightBounds> TriangleLight::bounds() const {
   return all;
 }
 
-TriangleLight::Shape TriangleLight::moment(size_t i) const {
-  return shape_at(float(i) / float(moments_ - 1));
-}
+LightShape TriangleLight::moment(size_t i) const { return shape_at(float(i) / float(mesh_->moments_ - 1)); }
 
-LightBounds TriangleLight::bounds_at(const Shape& shape) const {
+LightBounds TriangleLight::bounds_at(const LightShape& shape) const {
   LightBounds bounds;
   for (const Vec3f& corner : shape.corners) bounds.box.add(corner);
   if (shape.opposite) bounds.box.add(*shape.opposite);
   bounds.axis = shape.normal;
   bounds.power = power_;
-  bounds.two_sided = material_->double_sided();
+  bounds.two_sided = mesh_->material_->double_sided();
   return bounds;
 }
 
-void TriangleLight::measure_emission() {
+void TriangleLight::measure_emission(EmissiveMesh& mesh) {
+  const SceneGeometry& geometry = *mesh.geometry_;
+  const Material& material = *mesh.material_;
   // The bound on cells keeps meshes of very many triangles small in memory.
   constexpr float most_cells = 1 << 22;
   const auto attributes = [&](const Vec2f& barycentrics) {
-    if (!material_->needs_attributes()) return SurfaceAttributes{};
+    if (!material.needs_attributes()) return SurfaceAttributes{};
     SurfacePoint point;
-    point.instance = instance_;
+    point.instance = mesh.instance_;
     point.primitive = primitive_;
     point.u = barycentrics.x;
     point.v = barycentrics.y;
-    return geometry_->attributes(point);
+    return geometry.attributes(point);
   };
-  const float limit = std::clamp(most_cells / float(geometry_->triangle_count(instance_)), 1.f, 1024.f);
-  const float texels =
-      material_->emissive_texels({attributes({0, 0}), attributes({1, 0}), attributes({0, 1})});
+  const float limit = std::clamp(most_cells / float(geometry.triangle_count(mesh.instance_)), 1.f, 1024.f);
+  const float texels = material.emissive_texels({attributes({0, 0}), attributes({1, 0}), attributes({0, 1})});
   // Two texels a side of a cell, and as many readings.
   const int cells = texels > 4 ? int(std::sqrt(std::min(texels / 4, limit))) : 1;
-  const int steps = even_ ? 1 : std::max(2, 12 / cells);  // readings across a cell
+  const int steps = mesh.even_ ? 1 : std::max(2, 12 / cells);  // readings across a cell
   std::vector<float> values(size_t(cells) * cells);
   double sum = 0, squares = 0;
   for (int y = 0; y < cells; ++y)
@@ -274,7 +298,7 @@ void TriangleLight::measure_emission() {
                       (float(line) + 0.5f) / float(cells * steps));
         const Vec2f place = sample_triangle(u);
         const SurfaceAttributes at = attributes(place);
-        total += material_->emission(at, true, 1) * material_->coverage(at);
+        total += material.emission(at, true, 1) * material.coverage(at);
       }
       float& value = values[size_t(y) * cells + x];
       value = luminance(total) / float(steps * steps);
@@ -282,15 +306,14 @@ void TriangleLight::measure_emission() {
       squares += double(value) * value;
     }
   const double mean = sum / double(values.size());
-  float area = shape_.area;
-  for (size_t i = 0; i < moments_; ++i) area = std::max(area, moment(i).area);
-  power_ = pi * area * float(mean) * (material_->double_sided() ? 2 : 1);
+  float area = shape_at(middle_of_shutter).area;
+  for (size_t i = 0; i < mesh.moments_; ++i) area = std::max(area, moment(i).area);
+  power_ = pi * area * float(mean) * (material.double_sided() ? 2 : 1);
   // As even as this, it is not worth a table.
   if (!(squares / double(values.size()) > 1.1 * mean * mean)) return;
   // What the readings missed is found by this part of the samples.
   for (float& value : values) value += 0.1f * float(mean);
-  texture_ = std::make_unique<const Distribution2D>(values, cells, cells);
-  shape_.near2 = 0;
+  mesh.textures_[primitive_] = std::make_unique<const Distribution2D>(values, cells, cells);
 }
 
 }  // namespace vernier

@@ -40,6 +40,19 @@ void expect_near(const Vec3f& found, const Vec3f& expected, const char* what) {
   EXPECT_LT(length(found - expected), 2e-5f) << what << " " << found << " " << expected;
 }
 
+/// What is told of a whole triangle at once is what is told of its corners.
+void expect_same_triangle(const SceneGeometry& geometry, uint32_t primitive) {
+  const PlacedTriangle placed = geometry.placed_triangle(0, primitive, middle_of_shutter);
+  EXPECT_EQ(placed.corners, geometry.triangle(0, primitive));
+  for (const Vec2f& corner : {Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 1)}) {
+    const Vec3f error = geometry.surface_point(0, primitive, corner).error;
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_GE(placed.error[axis], error[axis] * (1 - 1e-6f));
+      EXPECT_LE(placed.error[axis], 4 * max_component(error));
+    }
+  }
+}
+
 /// Of one triangle's points: instance 0 of `shared` against the only one of `baked`, whose winding is turned
 /// where it is mirrored.
 void expect_same_point(const SceneGeometry& shared, const SceneGeometry& baked, uint32_t primitive,
@@ -67,8 +80,11 @@ TEST(Geometry, APointOfAnInstanceIsWhatItIsInWorldSpace) {
     InstanceDescription placed, other;
     placed.to_world = to_world;
     const SceneGeometry shared({mesh}, {placed, other}), baked({mesh}, {placed});
-    for (uint32_t primitive = 0; primitive < shared.triangle_count(0); ++primitive)
+    for (uint32_t primitive = 0; primitive < shared.triangle_count(0); ++primitive) {
       expect_same_point(shared, baked, primitive, to_world.determinant() < 0);
+      expect_same_triangle(shared, primitive);
+      expect_same_triangle(baked, primitive);
+    }
   }
 }
 

@@ -84,6 +84,10 @@ TEST(LightBounds, WithoutADirectionCoverTheSphere) {
     EXPECT_EQ(merge(cone(axis, 0), cone({0, 1, 0}, 0)).cos_spread, -1);
 }
 
+LightTree tree_over(const std::vector<LightBounds>& lights) {
+  return {lights.size(), [&](size_t i) { return lights[i]; }};
+}
+
 /// Length of the interval of u about `u` in which `pick` gives what it gives there, of expected length
 /// `prob`.
 template <typename Pick>
@@ -120,7 +124,7 @@ std::vector<LightBounds> field(int side) {
 // it in proportion: what is left of its 53 is told by 2^-52 over the probability.
 TEST(LightTree, GivesEachOfVeryManyLightsItsProbability) {
   const std::vector<LightBounds> lights = field(300);
-  const LightTree tree(lights);
+  const LightTree tree = tree_over(lights);
   const LightReceiver receiver{{17.3f, -2, 110.8f}, {0, 1, 0}};
   const auto pick = [&](double u) { return tree.sample(receiver, u).light; };
   Random random(2);
@@ -143,7 +147,7 @@ TEST(LightTree, GivesAVeryFaintLightItsProbability) {
     lights[0].power = power;
     lights[1].box = {};
     lights[1].box.add(Vec3f(0.1f, 0, 0));
-    const LightTree tree(lights);
+    const LightTree tree = tree_over(lights);
     const LightReceiver receiver{{0, -3, 0}, {0, 1, 0}};
     const double prob = tree.prob(receiver, 0);
     EXPECT_NEAR(prob, power, 0.1 * power);
@@ -176,7 +180,7 @@ TEST(LightTree, OfManyLightsIsTheSameForAnyNumberOfThreads) {
   }
   const auto picks = [&](unsigned threads) {
     const ThreadLimit limit(threads);
-    const LightTree tree(lights);
+    const LightTree tree = tree_over(lights);
     Random choices(11);
     std::vector<std::pair<uint32_t, double>> list;
     for (int i = 0; i < 2000; ++i) {
