@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/scene_bytes.h"
+
+namespace vernier {
+
+uint64_t bytes_to_build(const SceneDescription& scene) {
+  constexpr uint64_t of_triangle = 140, of_glowing_triangle = 600, of_instance = 700;
+  uint64_t bytes = scene.instances.size() * of_instance;
+  for (const MeshDescription& mesh : scene.meshes) bytes += mesh.triangles.size() * of_triangle;
+  for (const InstanceDescription& instance : scene.instances)
+    if (max_component(scene.materials[instance.material].emissive) > 0)
+      bytes += scene.meshes[instance.mesh].triangles.size() * of_glowing_triangle;
+  return bytes;
+}
+
+}  // namespace vernier
