@@ -7,8 +7,8 @@
 
 namespace vernier {
 
-/// Bytes that building a scene takes beside its description, at the peak: about as many as were measured
-/// (docs/speed.md).
+/// Bytes that building a scene takes beside its description, at the peak: an estimate, after what was
+/// measured.
 uint64_t bytes_to_build(const SceneDescription& scene);
 
 }  // namespace vernier
