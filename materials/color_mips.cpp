@@ -4,6 +4,7 @@
 #include <map>
 
 #include "materials/material.h"
+#include "materials/texture_pixels.h"
 
 namespace vernier {
 
@@ -24,8 +25,7 @@ void ColorMips::make_all(std::span<const Material> materials) {
       if (is_new) {
         mips->second = make_mips(texture.pixels(), by_alpha);
         for (const TexturePixels& mip : mips->second)
-          std::visit([&](const auto& image) { bytes += image->values.size() * sizeof(image->values[0]); },
-                     mip);
+          if (!file_of(mip)) bytes += texel_bytes(mip);
       }
       pyramid = std::make_unique<MipPyramid>(texture, mips->second, by_alpha);
     }

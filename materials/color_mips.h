@@ -24,7 +24,7 @@ class ColorMips {
   const MipPyramid* find(int texture, bool by_alpha) const {
     return pyramids_.empty() ? nullptr : pyramids_[size_t(texture)][by_alpha].get();
   }
-  /// In memory beside the textures themselves; 0 before make().
+  /// In memory beside the textures themselves, none of those that are in a file; 0 before make().
   size_t bytes() const { return bytes_; }
 
  private:

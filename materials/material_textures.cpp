@@ -86,9 +86,8 @@ float Material::emissive_texels(const std::array<SurfaceAttributes, 3>& corners)
     if (!use) return 0.f;
     const auto at = [&](size_t i) { return transform_uv(use, corners[i].texcoord(use.texcoord)); };
     const Vec2f a = at(1) - at(0), b = at(2) - at(0);
-    const float size = textures_[size_t(use.texture)].with_image(
-        [](const auto& image) { return float(image.width) * float(image.height); });
-    return std::abs(a.x * b.y - a.y * b.x) / 2 * size;
+    const Texture& texture = textures_[size_t(use.texture)];
+    return std::abs(a.x * b.y - a.y * b.x) / 2 * (float(texture.width()) * float(texture.height()));
   };
   const float emitted = texels(description_.emissive_texture);
   return is_opaque() ? emitted : std::max(emitted, texels(description_.base_color_texture));

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "core/base/parallel.h"
+#include "materials/texture_pixels.h"
 
 namespace vernier {
 namespace {
@@ -119,6 +121,7 @@ Ellipse ellipse_of(const Vec2f& p, const Vec2f& q) {
 
 std::vector<TexturePixels> make_mips(const TexturePixels& picture, bool by_alpha) {
   std::vector<TexturePixels> mips;
+  const std::shared_ptr<PagedFile> file = file_of(picture);
   std::visit(
       [&]<typename T>(const std::shared_ptr<const BasicImage<T>>& image) {
         std::vector<std::shared_ptr<BasicImage<T>>> levels;
@@ -128,16 +131,14 @@ std::vector<TexturePixels> make_mips(const TexturePixels& picture, bool by_alpha
           last = levels.back().get();
         }
         for (size_t i = levels.size(); i-- > 1;) fill_holes(*levels[i - 1], *levels[i]);
-        mips.assign(levels.begin(), levels.end());
+        for (auto& level : levels) mips.push_back(in_file(std::exchange(level, nullptr), file));
       },
-      picture);
+      in_memory(picture));
   return mips;
 }
 
 MipPyramid::MipPyramid(const Texture& texture, const std::vector<TexturePixels>& mips, bool by_alpha)
-    : levels_{texture}, by_alpha_(by_alpha) {
-  size_ =
-      texture.with_image([](const auto& image) { return Vec2f(float(image.width), float(image.height)); });
+    : levels_{texture}, by_alpha_(by_alpha), size_(float(texture.width()), float(texture.height())) {
   for (const TexturePixels& mip : mips)
     levels_.emplace_back(mip, texture.wrap_s(), texture.wrap_t(), FilterMode::linear);
 }

@@ -14,7 +14,8 @@ using UvArea = std::array<Vec2f, 2>;
 /// Copies of a picture of sRGB colors, each half the size of the one before (rounded down), to a single
 /// texel: every texel is the mean of the box that it covers in the copy before, in linear light, also where
 /// sides are odd (Guthe and Heckbert 2005, "Non-Power-of-Two Mipmap Creation"). `by_alpha` weights texels by
-/// their alpha, which says how much of the color there is; otherwise copies have no alpha.
+/// their alpha, which says how much of the color there is; otherwise copies have no alpha. They lie where the
+/// picture does.
 std::vector<TexturePixels> make_mips(const TexturePixels& picture, bool by_alpha);
 
 /// A texture of sRGB colors, to be read over an area (Williams 1983, "Pyramidal Parametrics").

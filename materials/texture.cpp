@@ -4,6 +4,8 @@
 #include <array>
 #include <vector>
 
+#include "core/image/paged_image.h"
+
 namespace vernier {
 namespace {
 
@@ -96,22 +98,44 @@ Vec4f decoded(const T* texel, const Codes& codes) {
   }
 }
 
-template <int channels, typename T, typename Codes>
-Vec4f bilinear(const BasicImage<T>& image, const Neighbors& x, const Neighbors& y, const Codes& codes) {
+/// The texels that lie about a point.
+template <typename T>
+struct Quad {
+  const T *upper_left, *upper_right, *lower_left, *lower_right;
+};
+
+template <int channels, typename T>
+[[gnu::always_inline]] inline Quad<T> quad(const BasicImage<T>& image, const Neighbors& x,
+                                           const Neighbors& y) {
   const size_t row = size_t(image.width) * channels;
   const T* upper = image.values.data() + size_t(y.first) * row;
   const T* lower = image.values.data() + size_t(y.second) * row;
   const size_t left = size_t(x.first) * channels, right = size_t(x.second) * channels;
-  const Vec4f top = decoded<channels>(upper + left, codes) * (1 - x.weight) +
-                    decoded<channels>(upper + right, codes) * x.weight;
-  const Vec4f bottom = decoded<channels>(lower + left, codes) * (1 - x.weight) +
-                       decoded<channels>(lower + right, codes) * x.weight;
+  return {upper + left, upper + right, lower + left, lower + right};
+}
+
+template <int channels, typename T>
+[[gnu::always_inline]] inline Quad<T> quad(const PagedImage<T>& image, const Neighbors& x,
+                                           const Neighbors& y) {
+  return {image.template texel<channels>(x.first, y.first), image.template texel<channels>(x.second, y.first),
+          image.template texel<channels>(x.first, y.second),
+          image.template texel<channels>(x.second, y.second)};
+}
+
+template <int channels, typename Picture, typename Codes>
+Vec4f bilinear(const Picture& image, const Neighbors& x, const Neighbors& y, const Codes& codes) {
+  const auto texels = quad<channels>(image, x, y);
+  const Vec4f top = decoded<channels>(texels.upper_left, codes) * (1 - x.weight) +
+                    decoded<channels>(texels.upper_right, codes) * x.weight;
+  const Vec4f bottom = decoded<channels>(texels.lower_left, codes) * (1 - x.weight) +
+                       decoded<channels>(texels.lower_right, codes) * x.weight;
   return top * (1 - y.weight) + bottom * y.weight;
 }
 
-template <typename T, typename Codes>
-Vec4f interpolated(const BasicImage<T>& image, const Neighbors& x, const Neighbors& y, const Codes& codes) {
-  switch (image.channels) {
+template <typename Picture, typename Codes>
+Vec4f interpolated(const Picture& image, int channels, const Neighbors& x, const Neighbors& y,
+                   const Codes& codes) {
+  switch (channels) {
     case 1:
       return bilinear<1>(image, x, y, codes);
     case 2:
@@ -123,24 +147,51 @@ Vec4f interpolated(const BasicImage<T>& image, const Neighbors& x, const Neighbo
   }
 }
 
+/// A picture's size and codes.
+template <typename T>
+struct Format {
+  using Code = T;
+  int width, height, channels;
+};
+
+template <typename T>
+Format<T> format_of(const BasicImage<T>& image) {
+  return {image.width, image.height, image.channels};
+}
+
+template <typename T>
+Format<T> format_of(const PagedImage<T>& image) {
+  return {image.width(), image.height(), image.channels()};
+}
+
 }  // namespace
 
+int Texture::width() const {
+  return std::visit([](const auto& image) { return format_of(*image).width; }, pixels_);
+}
+
+int Texture::height() const {
+  return std::visit([](const auto& image) { return format_of(*image).height; }, pixels_);
+}
+
 Vec4f Texture::sample(const Vec2f& uv, TexelEncoding encoding) const {
-  return with_image([&]<typename T>(const BasicImage<T>& image) {
+  const auto read = [&](const auto& image) {
+    const auto format = format_of(*image);
     Neighbors x, y;
     if (filter_ == FilterMode::nearest) {
-      x.first = x.second = nearest(uv.x, image.width, wrap_s_);
-      y.first = y.second = nearest(uv.y, image.height, wrap_t_);
+      x.first = x.second = nearest(uv.x, format.width, wrap_s_);
+      y.first = y.second = nearest(uv.y, format.height, wrap_t_);
       x.weight = y.weight = 0;
     } else {
-      x = neighbors(uv.x, image.width, wrap_s_);
-      y = neighbors(uv.y, image.height, wrap_t_);
+      x = neighbors(uv.x, format.width, wrap_s_);
+      y = neighbors(uv.y, format.height, wrap_t_);
     }
-    if constexpr (std::is_same_v<T, uint8_t>)
-      return interpolated(image, x, y, Codes8(encoding));
+    if constexpr (std::is_same_v<typename decltype(format)::Code, uint8_t>)
+      return interpolated(*image, format.channels, x, y, Codes8(encoding));
     else
-      return interpolated(image, x, y, Codes16(encoding));
-  });
+      return interpolated(*image, format.channels, x, y, Codes16(encoding));
+  };
+  return std::visit(read, pixels_);
 }
 
 }  // namespace vernier

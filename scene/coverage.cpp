@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/sampling/sampler.h"
+#include "materials/texture_pixels.h"
 #include "scene/emission.h"
 
 namespace vernier {
@@ -47,8 +48,8 @@ std::vector<bool> cut_instances(const SceneGeometry& geometry, std::span<const M
         use && materials[i].alpha_mode != AlphaMode::opaque) {
       const auto [entry, is_new] = of_textures.try_emplace(use.texture);
       if (is_new)
-        entry->second =
-            textures[size_t(use.texture)].with_image([](const auto& image) { return least_alpha(image); });
+        entry->second = std::visit([](const auto& image) { return least_alpha(*image); },
+                                   in_memory(textures[size_t(use.texture)].pixels()));
       of_materials[i] *= entry->second;
     }
   }

@@ -8,6 +8,7 @@
 
 #include "apps/vernier/choose_camera.h"
 #include "apps/vernier/flags.h"
+#include "apps/vernier/memory_limit.h"
 #include "apps/vernier/notice_log.h"
 #include "apps/vernier/surroundings.h"
 #include "core/base/names.h"
@@ -85,7 +86,7 @@ RenderSettings bench_options(const RenderFlags& flags, const CameraDescription& 
     options.width = std::max(1, options.width * longest_side / longer);
     options.height = std::max(1, options.height * longest_side / longer);
   }
-  check_picture_size(options, {});
+  check_picture_size(options, {}, {});
   if (reference && (reference->width != options.width || reference->height != options.height))
     throw Error(ErrorKind::usage,
                 fmt::format("the reference has {}x{} pixels and --size asks for {}x{}", reference->width,

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <malloc.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <ctime>
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 
@@ -17,6 +14,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/names.h"
 #include "core/base/parallel.h"
+#include "core/base/resident_memory.h"
 #include "integrators/render/render.h"
 #include "scene/accel/accelerator.h"
 #include "scene/scene.h"
@@ -61,15 +59,6 @@ auto measured(Cost& cost, const Call& call) {
   const unsigned others = thread_count() - 1;
   cost.serial += others > 0 ? std::max(0.0, own - (all - own) / others) : std::nan("");
   return result;
-}
-
-/// Resident now, given-back memory left out.
-size_t resident_bytes() {
-  malloc_trim(0);
-  std::ifstream stream("/proc/self/statm");
-  size_t all = 0, resident = 0;
-  stream >> all >> resident;
-  return resident * size_t(sysconf(_SC_PAGESIZE));
 }
 
 struct Picture {

@@ -7,6 +7,7 @@
 
 #include "apps/vernier/choose_camera.h"
 #include "apps/vernier/fog_flag.h"
+#include "apps/vernier/memory_limit.h"
 #include "apps/vernier/result_warnings.h"
 #include "scene/camera.h"
 #include "scene/segment.h"
@@ -47,6 +48,7 @@ void LiveScene::build(const RenderRequest& request, NoticeLog& log) {
       built.materials.push_back(name_or_number(material, instance.material));
     }
     const std::string source = description.source;
+    check_scene_size(description, request.flags.import.memory);
     built.scene = build_scene(std::move(description), {request.flags.accelerator});
     if (request.flags.import.strict) refuse_warnings(source, built.scene->notices());
     const std::unique_lock lock(mutex_);
@@ -118,7 +120,7 @@ RenderSettings LiveScene::prepare(const RenderRequest& request, NoticeLog& log) 
                                  asked_aspect(request.flags.size), log);
   fill_in_size(settings, settings.camera);
   fit_lens(settings, flags.lens, *built_.scene, log);
-  check_picture_size(settings, memory_use(request));
+  check_picture_size(settings, memory_use(request), request.flags.import.memory);
   set_environment(request, settings, log);
   const std::unique_lock lock(mutex_);
   settings_ = settings;

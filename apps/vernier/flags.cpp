@@ -12,6 +12,7 @@
 #include <set>
 #include <string_view>
 
+#include "core/base/quantities.h"
 #include "vernier/error.h"
 
 namespace vernier::apps {
@@ -38,6 +39,18 @@ CLI::Validator number_between(Number least, Number most, const char* kind) {
       return fmt::format("'{}' is not a {} from {} to {}", text, kind, least, most);
     text = fmt::format("{}", *value);
     return std::string();
+  };
+  return {check, ""};
+}
+
+CLI::Validator amount_of_memory() {
+  const auto check = [](std::string& text) -> std::string {
+    try {
+      text = fmt::format("{}", parse_bytes(text));
+      return {};
+    } catch (const Error& error) {
+      return error.what();
+    }
   };
   return {check, ""};
 }
@@ -77,6 +90,13 @@ void add_import_flags(CLI::App& command, ImportOptions& options) {
                   "animation that poses the scene, by name or number, or all (all if no two move the same, "
                   "else the first)")
       ->type_name("NAME|N|all");
+  command
+      .add_option(
+          "--max-memory", options.memory.bytes,
+          "memory that may be taken: 2G, 500M; textures that do not fit are read from a file in $TMPDIR "
+          "or /var/tmp, and a scene that does not is refused (docs/textures.md)")
+      ->transform(amount_of_memory())
+      ->type_name("SIZE");
   command.add_flag("--allow-outside-files", options.allow_outside_files,
                    "read files that the scene refers to outside its folder");
   command.add_flag("--strict", options.strict, "refuse a scene that is not honoured exactly");

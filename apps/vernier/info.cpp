@@ -6,6 +6,7 @@
 #include "apps/vernier/choose_camera.h"
 #include "apps/vernier/commands.h"
 #include "apps/vernier/flags.h"
+#include "apps/vernier/memory_limit.h"
 #include "apps/vernier/messages.h"
 #include "apps/vernier/notice_log.h"
 #include "apps/vernier/scene_json.h"
@@ -80,7 +81,7 @@ void print_text(const Json& scene, const SceneCounts& counts, const Bounds& boun
              counts.vertices);
   fmt::print("instances  {}, of {} triangles\n", counts.instances, counts.instanced_triangles);
   fmt::print("materials  {}\n", counts.materials);
-  fmt::print("textures   {}, {} decoded\n", counts.textures, format_bytes(double(counts.texture_bytes)));
+  fmt::print("textures   {}, {}\n", counts.textures, texture_bytes_text(counts));
   fmt::print("lights     {} punctual, {} emissive triangles\n", counts.punctual_lights,
              counts.emissive_triangles);
   const Json& render = scene["render"];
@@ -126,6 +127,7 @@ ExitCode run_info(const InfoFlags& flags) {
   Json json = scene_json(description, counts);
   const auto cameras = description.cameras;
   const auto notices = description.notices;
+  check_scene_size(description, flags.import.memory);
   Scene scene(std::move(description), {});
   if (flags.import.strict) refuse_warnings(flags.scene, scene.notices());
   json["bounds"] = bounds_json(scene.bounds());

@@ -9,12 +9,12 @@ namespace vernier::apps {
 
 LoadAhead::~LoadAhead() { wait(); }
 
-void LoadAhead::start(PoseKey key, const std::string& file, Load load) {
+void LoadAhead::start(PoseKey key, const std::string& file, uint64_t max_memory, Load load) {
   wait();
   key_ = std::move(key);
   loaded_.reset();
-  const auto run = [this, file, load = std::move(load)] {
-    if (!has_room_for_scene(file)) return;
+  const auto run = [this, file, max_memory, load = std::move(load)] {
+    if (!has_room_for_scene(file, max_memory)) return;
     try {
       Loaded loaded;
       loaded.scene = load(loaded.notices);

@@ -35,9 +35,9 @@ class LoadAhead {
   LoadAhead(const LoadAhead&) = delete;
   LoadAhead& operator=(const LoadAhead&) = delete;
 
-  /// Begins, unless there is too little memory for the file beside what is rendered. What was loaded before
-  /// and not taken is dropped.
-  void start(PoseKey key, const std::string& file, Load load);
+  /// Begins, unless there is too little memory, by itself or by --max-memory (0: without), for the file
+  /// beside what is rendered. What was loaded before and not taken is dropped.
+  void start(PoseKey key, const std::string& file, uint64_t max_memory, Load load);
   /// Waits until nothing is being loaded, so that its loader may be used.
   void wait();
   /// What was loaded under this key, whose notices go to `log`; null when it was not.

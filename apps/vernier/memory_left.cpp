@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/vernier/picture_output.h"
+#include "core/base/resident_memory.h"
 
 namespace vernier::apps {
 namespace {
@@ -91,11 +92,13 @@ uint64_t bytes_of_scene(const std::string& file) {
   return bytes;
 }
 
-bool has_room_for_scene(const std::string& file) {
+bool has_room_for_scene(const std::string& file, uint64_t max_memory) {
   // Textures, which are decoded, are what grows most: those of a helmet, 3.8 MB as JPEG, take 84 MB. That
   // much is left free once more, for the pictures that are rendered.
   constexpr uint64_t growth = 32, share = 2;
-  return !is_standard_stream(file) && bytes_of_scene(file) < memory_left() / (growth * share);
+  uint64_t left = memory_left();
+  if (max_memory > 0) left = std::min(left, max_memory - std::min(max_memory, resident_bytes()));
+  return !is_standard_stream(file) && bytes_of_scene(file) < left / (growth * share);
 }
 
 }  // namespace vernier::apps

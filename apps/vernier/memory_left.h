@@ -13,8 +13,8 @@ uint64_t memory_left();
 /// Bytes of a scene file and of the buffers and images that it refers to. 0 where it cannot be read.
 uint64_t bytes_of_scene(const std::string& file);
 
-/// Whether there is surely room for a scene beside all that is in memory. Standard input is nothing to look
-/// at, and has none.
-bool has_room_for_scene(const std::string& file);
+/// Whether there is surely room for a scene beside all that is in memory, within --max-memory (0: without).
+/// Standard input is nothing to look at, and has none.
+bool has_room_for_scene(const std::string& file, uint64_t max_memory);
 
 }  // namespace vernier::apps

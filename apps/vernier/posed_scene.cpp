@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "apps/vernier/fog_flag.h"
+#include "apps/vernier/memory_limit.h"
 #include "apps/vernier/scene_summary.h"
 #include "apps/vernier/stopwatch.h"
 #include "scene/subject.h"
@@ -56,6 +57,7 @@ PosedScene::PosedScene(const RenderFlags& flags, const RunPlan& plan, SceneDescr
   else
     chosen_ = all_cameras(cameras, log);
   if (flags.camera.ground) add_ground(description, *flags.camera.ground);
+  check_scene_size(description, flags.import.memory);
   Stopwatch watch;
   scene_ = build_scene(std::move(description), {flags.accelerator});
   report_.build_seconds = watch.lap();

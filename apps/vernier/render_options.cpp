@@ -2,7 +2,6 @@
 #include "apps/vernier/render_options.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
@@ -15,6 +14,7 @@
 #include "apps/vernier/flags.h"
 #include "apps/vernier/fog_flag.h"
 #include "apps/vernier/light_flags.h"
+#include "apps/vernier/memory_limit.h"
 #include "apps/vernier/picture_output.h"
 #include "apps/vernier/stopwatch.h"
 #include "core/base/atomic_file.h"
@@ -183,23 +183,6 @@ MemoryUse memory_use(const RenderRequest& request) {
   return use;
 }
 
-void check_picture_size(const RenderSettings& options, const MemoryUse& use) {
-  const Crop& crop = options.crop;
-  if (crop.width > 0 && (crop.width > options.width - crop.x || crop.height > options.height - crop.y))
-    throw Error(ErrorKind::usage,
-                fmt::format("--crop {}x{}+{}+{} reaches beyond the picture of {}x{}", crop.width, crop.height,
-                            crop.x, crop.y, options.width, options.height));
-  const double pixels =
-      crop.width > 0 ? double(crop.width) * crop.height : double(options.width) * options.height;
-  const double bytes = pixels * double(peak_bytes_per_pixel(use));
-  const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
-  if (bytes > memory)
-    throw Error(ErrorKind::memory,
-                fmt::format("a picture of {} pixels needs {} of memory beside the scene and there are {}; "
-                            "render parts with --crop",
-                            format_count(pixels), format_bytes(bytes), format_bytes(memory)));
-}
-
 RenderRequest check_render_flags(const RenderFlags& given) {
   require_scene(given.run.scenes.empty() ? "" : given.run.scenes.front(), "render");
   check_outputs(given);
@@ -220,7 +203,9 @@ RenderRequest check_render_flags(const RenderFlags& given) {
   check_exr_flags(flags.exr, named_outputs(flags), !request.layers.empty());
   request.settings.light_split = choose_light_split(flags.light_groups, request.layers);
   if (!flags.denoise.empty()) request.denoiser = &find_denoiser(flags.denoise);
-  if (request.settings.width > 0) check_picture_size(request.settings, memory_use(request));
+  MemoryLimit& limit = request.flags.import.memory;
+  if (request.settings.width > 0) check_picture_size(request.settings, memory_use(request), limit);
+  limit = leaving_room_for_pictures(limit, request.settings, memory_use(request));
   request.display = choose_display(flags);
   check_surroundings(flags.surroundings);
   parse_fog(flags.fog);

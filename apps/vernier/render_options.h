@@ -40,8 +40,4 @@ bool has_display_output(const RenderFlags& flags);
 
 MemoryUse memory_use(const RenderRequest& request);
 
-/// Whether the crop lies in the picture, and what a render of it takes in memory. Throws Error(usage) or
-/// Error(memory).
-void check_picture_size(const RenderSettings& options, const MemoryUse& use);
-
 }  // namespace vernier::apps

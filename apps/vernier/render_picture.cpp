@@ -13,6 +13,7 @@
 #include "apps/vernier/choose_camera.h"
 #include "apps/vernier/denoising.h"
 #include "apps/vernier/exr_flags.h"
+#include "apps/vernier/memory_limit.h"
 #include "apps/vernier/messages.h"
 #include "apps/vernier/outputs.h"
 #include "apps/vernier/partial_pictures.h"
@@ -58,7 +59,7 @@ void prepare(const RenderRequest& request, PosedScene& posed, const View& view, 
   report.camera = view.camera.name;
   fill_in_size(settings, settings.camera);
   report.lens = fit_lens(settings, request.flags.camera.lens, *posed.scene(), log);
-  check_picture_size(settings, memory_use(request));
+  check_picture_size(settings, memory_use(request), request.flags.import.memory);
   if (shows_light(request.flags)) report.surroundings = posed.set_environment(request, settings, view, log);
   log.add(posed.scene()->notices());
   if (request.flags.import.strict) refuse_warnings(request.flags.scene, posed.scene()->notices());

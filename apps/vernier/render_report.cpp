@@ -210,8 +210,7 @@ std::string scene_lines(const RenderReport& report) {
              "scene: {} triangles in {} meshes, {} in {} instances; {} materials, {} textures ({}), {} "
              "punctual lights, {} emissive triangles\n",
              counts.triangles, counts.meshes, counts.instanced_triangles, counts.instances, counts.materials,
-             counts.textures, format_bytes(double(counts.texture_bytes)), counts.punctual_lights,
-             counts.emissive_triangles) +
+             counts.textures, texture_bytes_text(counts), counts.punctual_lights, counts.emissive_triangles) +
          fmt::format("accelerator: {}, {}, built in {}\n", report.accelerator,
                      format_bytes(double(report.accelerator_stats.bytes)),
                      format_seconds(report.accelerator_stats.build_seconds)) +

@@ -213,7 +213,8 @@ void RenderRun::load_pose(std::shared_ptr<SceneLoader> loader, size_t scene, con
     if (keeps_file || shows_motion_ || !is_known) loader->open(file);
     return is_known ? loader->pose(flags_for(request_.flags, plan_, file, name), plan_, log) : nullptr;
   };
-  resources_.ahead.start({std::move(loader), name.variant, name.frame}, file, load);
+  resources_.ahead.start({std::move(loader), name.variant, name.frame}, file,
+                         request_.flags.import.memory.bytes, load);
 }
 
 std::vector<RenderFlags> RenderRun::skipped_pictures(const std::string& scene, PictureName name) const {

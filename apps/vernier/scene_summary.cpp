@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/vernier/scene_summary.h"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 #include <set>
+
+#include "core/base/quantities.h"
+#include "materials/texture_pixels.h"
 
 namespace vernier::apps {
 
@@ -26,11 +31,21 @@ SceneCounts count(const SceneDescription& scene) {
     if (emissive.x > 0 || emissive.y > 0 || emissive.z > 0) counts.emissive_triangles += triangles;
   }
   std::set<const void*> images;
-  for (const auto& texture : scene.textures)
-    texture.with_image([&](const auto& image) {
-      if (images.insert(&image).second) counts.texture_bytes += image.values.size() * sizeof(image.values[0]);
-    });
+  for (const auto& texture : scene.textures) {
+    const TexturePixels& pixels = texture.pixels();
+    if (!images.insert(std::visit([](const auto& image) -> const void* { return image.get(); }, pixels))
+             .second)
+      continue;
+    counts.texture_bytes += texel_bytes(pixels);
+    if (file_of(pixels)) counts.texture_bytes_in_file += texel_bytes(pixels);
+  }
   return counts;
+}
+
+std::string texture_bytes_text(const SceneCounts& counts) {
+  const std::string decoded = format_bytes(double(counts.texture_bytes)) + " decoded";
+  if (counts.texture_bytes_in_file == 0) return decoded;
+  return fmt::format("{}, {} of it in a file", decoded, format_bytes(double(counts.texture_bytes_in_file)));
 }
 
 nlohmann::ordered_json to_json(const SceneCounts& counts) {
@@ -42,6 +57,7 @@ nlohmann::ordered_json to_json(const SceneCounts& counts) {
           {"materials", counts.materials},
           {"textures", counts.textures},
           {"texture_bytes", counts.texture_bytes},
+          {"texture_bytes_in_file", counts.texture_bytes_in_file},
           {"cameras", counts.cameras},
           {"punctual_lights", counts.punctual_lights},
           {"emissive_triangles", counts.emissive_triangles},

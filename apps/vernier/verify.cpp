@@ -6,6 +6,7 @@
 #include "apps/validation/cross_check.h"
 #include "apps/vernier/choose_camera.h"
 #include "apps/vernier/flags.h"
+#include "apps/vernier/memory_limit.h"
 #include "apps/vernier/run_plan.h"
 #include "apps/vernier/surroundings.h"
 #include "core/base/names.h"
@@ -100,6 +101,7 @@ ExitCode run_verify(const VerifyFlags& flags) {
   import.shutter = shutter_of(flags.shutter, frame_seconds(RunFlags{}));
   SceneDescription description = import_scene(flags.scene, import);
   const auto chosen = choose_camera(description.cameras, flags.camera, log);
+  check_scene_size(description, import.memory);
   Scene scene(std::move(description), {std::string(pair[0]->name)});
   RenderSettings settings;
   settings.seed = flags.seed;

@@ -105,6 +105,25 @@ double parse_fraction(std::string_view text) {
   return part;
 }
 
+uint64_t parse_bytes(std::string_view text) {
+  constexpr std::string_view expected = "an amount of memory such as 2G, 500M, 1.5GiB or 3000000000 (bytes)";
+  constexpr std::string_view prefixes = "kMGT";
+  std::string_view rest = text;
+  const auto number = take_number<double>(rest);
+  if (!number) refuse(text, expected);
+  while (!rest.empty() && rest.front() == ' ') rest.remove_prefix(1);
+  double bytes = *number;
+  const size_t power = rest.empty() ? prefixes.npos : prefixes.find(rest.front());
+  if (power != prefixes.npos) {
+    rest.remove_prefix(1);
+    bytes *= std::pow(take(rest, 'i') ? 1024.0 : 1000.0, double(power + 1));
+  }
+  take(rest, 'B');
+  constexpr double most = 1e18;
+  if (!rest.empty() || !(bytes >= 1 && bytes <= most)) refuse(text, expected);
+  return uint64_t(bytes);
+}
+
 float parse_margin(std::string_view text) {
   std::string_view rest = text;
   const auto number = take_number<double>(rest);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -27,6 +28,9 @@ double parse_fraction(std::string_view text);
 
 /// A part of a picture's side, from 0 to 45 %: "8%", "0.08", "0".
 float parse_margin(std::string_view text);
+
+/// Bytes, at least 1, from "2G", "500 MB", "1.5GiB", or a bare number: decimal units unless they have an i.
+uint64_t parse_bytes(std::string_view text);
 
 /// Three finite numbers: "1.5,0,-2".
 std::array<float, 3> parse_point(std::string_view text);

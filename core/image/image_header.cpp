@@ -29,6 +29,12 @@ int64_t little_endian(Bytes bytes, size_t at, size_t count) {
   return value;
 }
 
+/// A pixel's, of this bit depth and color type (ISO/IEC 15948, 11.2.2); palettes may have alpha.
+int decoded_png_bytes(int depth, int color_type) {
+  const int channels = color_type == 0 ? 1 : color_type == 4 ? 2 : color_type == 2 ? 3 : 4;
+  return channels * (depth == 16 ? 2 : 1);
+}
+
 // PNG (ISO/IEC 15948): signature, then chunks of length, type, data, checksum; IHDR first, IEND last.
 // Checksums are tested here because libpng writes its complaints to standard error.
 ImageHeader parse_png(Bytes bytes) {
@@ -37,6 +43,7 @@ ImageHeader parse_png(Bytes bytes) {
     header.width = big_endian(bytes, 16, 4);
     header.height = big_endian(bytes, 20, 4);
   }
+  if (bytes.size() >= 26) header.bytes_per_pixel = decoded_png_bytes(bytes[24], bytes[25]);
   size_t at = 8;
   for (header.cut_off = true; !header.intact && at + 12 <= bytes.size();) {
     const size_t length = size_t(big_endian(bytes, at, 4));
@@ -58,6 +65,7 @@ bool is_start_of_frame(uint8_t marker) {
 // segment and is skipped.
 ImageHeader parse_jpeg(Bytes bytes) {
   ImageHeader header{"jpeg"};
+  header.bytes_per_pixel = 3;
   header.cut_off = true;
   size_t at = 2;
   while (at + 2 <= bytes.size()) {
@@ -162,6 +170,7 @@ void find_avif_size(const Box& box, ImageHeader& header, size_t depth = 0) {
 ImageHeader parse_avif(Bytes bytes) {
   ImageHeader header{"avif"};
   header.most_pixels_per_byte = 1 << 17;
+  header.bytes_per_pixel = 8;
   header.intact = for_each_box(bytes, [&](const Box& box) { find_avif_size(box, header); });
   return header;
 }

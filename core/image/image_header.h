@@ -16,6 +16,7 @@ struct ImageHeader {
   bool cut_off = false;  ///< else: it ends before that mark, and what there is has nothing wrong
   /// What no file of the format has more of. Of most: deflate packs 1,032 values a byte, JPEG a bit a block.
   int64_t most_pixels_per_byte = 4096;
+  int bytes_per_pixel = 4;  ///< once decoded, as far as the beginning tells
 };
 
 /// Checksum of a PNG chunk (ISO/IEC 15948, 5.5).

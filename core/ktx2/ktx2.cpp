@@ -5,6 +5,7 @@
 
 #include "core/ktx2/etc1s.h"
 #include "core/ktx2/level.h"
+#include "core/ktx2/little_endian.h"
 #include "core/ktx2/uastc.h"
 
 namespace vernier::ktx2 {
@@ -30,6 +31,12 @@ void move_green(Texture& texture) {
 }
 
 }  // namespace
+
+uint64_t stated_texels(std::span<const uint8_t> file) {
+  constexpr size_t width_at = 20, height_at = 24;  // KTX File Format Specification 2.0, 3
+  if (file.size() < height_at + sizeof(uint32_t)) return 0;
+  return uint64_t{read_number<uint32_t>(file, width_at)} * read_number<uint32_t>(file, height_at);
+}
 
 Texture decode(std::span<const uint8_t> file, uint64_t max_texels) {
   Container container = parse_container(file, max_texels);

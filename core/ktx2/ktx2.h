@@ -23,6 +23,9 @@ struct Texture {
 /// Whether the bytes begin with KTX2's signature.
 bool is_ktx2(std::span<const uint8_t> file);
 
+/// Texels of its base level as its header has it, of whose truth nothing is known; 0 where it is cut off.
+uint64_t stated_texels(std::span<const uint8_t> file);
+
 /// Decodes the base level of a KTX2 file that holds one 2D picture: as ETC1S in BasisLZ, as UASTC LDR 4x4, or
 /// as plain texels of one to four channels of eight bits, the latter two with or without Zstandard. Basis
 /// Universal's texels are those of Binomial's transcoder to RGBA32, bit for bit; where the descriptor says

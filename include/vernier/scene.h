@@ -138,6 +138,15 @@ struct Shutter {
   double open = 0, close = 0;
 };
 
+/// How much memory may be taken. Where decoded textures would not fit, they are kept in a file without a
+/// name, in the folder of TMPDIR or else /var/tmp, and read from it as rays meet them: the same picture,
+/// later.
+struct MemoryLimit {
+  uint64_t bytes = 0;      ///< that the process may hold; 0: as many as it takes
+  uint64_t elsewhere = 0;  ///< of these, what is to be left for pictures
+  bool has_mips = false;   ///< textures of colors will be read by smaller copies too
+};
+
 /// How a file becomes a description.
 struct ImportOptions {
   bool strict = false;  ///< anything not honoured exactly is an error
@@ -152,6 +161,7 @@ struct ImportOptions {
   std::optional<Shutter> shutter{};
   /// Files that the scene refers to may lie outside its folder; such a reference is an error otherwise.
   bool allow_outside_files = false;
+  MemoryLimit memory{};
 };
 
 /// Reads a .gltf or .glb file with all it refers to. Throws Error(input) with the file and JSON pointer, and

@@ -15,8 +15,14 @@ enum class WrapMode { repeat, mirrored_repeat, clamp_to_edge };
 enum class FilterMode { nearest, linear };
 enum class TexelEncoding { linear, srgb };
 
+/// Pixels that lie on a disk (core/image/paged_image.h), for scenes that memory is too small for.
+template <typename T>
+class PagedImage;
+
 /// The pixels of a texture, in the bits of its file.
-using TexturePixels = std::variant<std::shared_ptr<const Image8>, std::shared_ptr<const Image16>>;
+using TexturePixels =
+    std::variant<std::shared_ptr<const Image8>, std::shared_ptr<const Image16>,
+                 std::shared_ptr<const PagedImage<uint8_t>>, std::shared_ptr<const PagedImage<uint16_t>>>;
 
 /// Picture read at (u, v): u to the right, v downwards, (0,0) the outer corner of the first texel, as glTF
 /// has it. Pixels are shared between textures of one image and stay in the bits that they came in.
@@ -32,12 +38,9 @@ class VERNIER_API Texture {
   Vec4f sample(const Vec2f& uv, TexelEncoding encoding) const;
 
   const TexturePixels& pixels() const { return pixels_; }
-  /// What `visit` makes of the picture, an Image8 or an Image16.
-  template <typename Visit>
-  auto with_image(const Visit& visit) const {
-    return std::visit([&](const auto& image) { return visit(*image); }, pixels_);
-  }
-  /// The picture of a texture known to have codes of type T.
+  int width() const;
+  int height() const;
+  /// The picture of a texture known to be in memory and to have codes of type T.
   template <typename T = uint8_t>
   const BasicImage<T>& image() const {
     return *std::get<std::shared_ptr<const BasicImage<T>>>(pixels_);

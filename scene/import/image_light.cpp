@@ -115,7 +115,7 @@ class ImageLightReader {
             faces[i] = to_radiance(*face);
             bounded = bounded && face->channels != 4;
           },
-          *decoded[i].pixels);
+          in_memory(*decoded[i].pixels));
       if (!decoded[i].fingerprint.empty()) fingerprints.push_back(decoded[i].fingerprint);
       for (const auto& remark : decoded[i].remarks)
         notices.push_back(
@@ -146,7 +146,7 @@ class ImageLightReader {
                                    "it; there are {1} x {2}",
                                    size, face->width, face->height));
         },
-        *image.pixels);
+        in_memory(*image.pixels));
   }
 
   Imath::Quatf rotation(std::vector<Notice>& notices) const {

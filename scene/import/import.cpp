@@ -19,6 +19,7 @@
 #include "scene/import/nodes.h"
 #include "scene/import/textures.h"
 #include "scene/import/thin_bodies.h"
+#include "scene/scene_bytes.h"
 
 namespace vernier {
 namespace {
@@ -175,6 +176,7 @@ SceneDescription SceneFile::Content::describe(const ImportOptions& options, bool
   add_shapes(options, keep, scene);
 
   std::vector<std::string> fingerprints = document_.fingerprints();
+  if (options.memory.bytes > 0) images_.memory.limit(options.memory, bytes_to_build(scene));
   add_textures(document_, materials_.derived, images_, scene, fingerprints);
   add_environment(scene, fingerprints);
   scene.hash = combined_fingerprint(fingerprints);

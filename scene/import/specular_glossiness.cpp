@@ -24,8 +24,8 @@ std::shared_ptr<const BasicImage<T>> roughness_of(const BasicImage<T>& source, f
 
 }  // namespace
 
-TexturePixels roughness_of(const TexturePixels& source, float factor) {
-  return std::visit([&](const auto& image) { return TexturePixels(roughness_of(*image, factor)); }, source);
+PixelsInMemory roughness_of(const PixelsInMemory& source, float factor) {
+  return std::visit([&](const auto& image) { return PixelsInMemory(roughness_of(*image, factor)); }, source);
 }
 
 }  // namespace vernier

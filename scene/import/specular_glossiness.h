@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "vernier/texture.h"
+#include "materials/texture_pixels.h"
 
 namespace vernier {
 
@@ -15,6 +15,6 @@ struct RoughnessFromGlossiness {
 
 /// Green is 1 - factor x alpha, as metallic-roughness textures have it; exact but for the rounding to the
 /// bits of the source, since filtering a texture and taking it from 1 commute.
-TexturePixels roughness_of(const TexturePixels& specular_glossiness, float factor);
+PixelsInMemory roughness_of(const PixelsInMemory& specular_glossiness, float factor);
 
 }  // namespace vernier

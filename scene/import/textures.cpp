@@ -7,10 +7,6 @@
 #include <map>
 #include <set>
 
-#include "core/base/fingerprint.h"
-#include "core/image/image_io.h"
-#include "scene/import/data_uri.h"
-#include "scene/import/ordered_parallel.h"
 #include "vernier/error.h"
 
 namespace vernier {
@@ -45,31 +41,32 @@ std::string problem_of(const Candidate& candidate, const std::map<int, DecodedIm
 }
 
 /// Decodes, in parallel, those of the images that are not there yet.
-void decode_missing(const Document& document, const std::vector<int>& indices,
+void decode_missing(const Document& document, const std::vector<int>& indices, const TextureMemory& memory,
                     std::map<int, DecodedImage>& images) {
   std::vector<std::pair<int, DecodedImage*>> jobs;
   for (const int index : indices)
     if (const auto [image, is_new] = images.try_emplace(index); is_new)
       jobs.emplace_back(index, &image->second);
-  for_each_in_parallel(jobs.size(),
-                       [&](size_t i) { *jobs[i].second = decode_image(document, jobs[i].first); });
+  memory.for_each_that_fits(
+      jobs.size(), [&](size_t i) { return expected_bytes(document, jobs[i].first); },
+      [&](size_t i) {
+        DecodedImage& image = *jobs[i].second;
+        image = decode_image(document, jobs[i].first);
+        if (image.pixels) image.pixels = memory.keep(in_memory(*image.pixels));
+      });
 }
 
 /// Decodes each texture's best image, and the next best where that fails, unless `images` has it. Returns the
 /// indices of those that were looked at.
-std::set<int> decode_images(const Document& document, const std::vector<int>& textures,
-                            std::map<int, DecodedImage>& images) {
+std::set<int> decode_images(const Document& document, const std::vector<std::vector<Candidate>>& candidates,
+                            const TextureMemory& memory, std::map<int, DecodedImage>& images) {
   std::set<int> looked_at;
-  std::vector<std::vector<Candidate>> candidates;
-  candidates.reserve(textures.size());
-  for (const int texture : textures)
-    candidates.push_back(candidates_of(document.model().textures[size_t(texture)]));
   for (size_t rank = 0; rank < 4; ++rank) {
     std::vector<int> wanted;
     for (const auto& list : candidates)
       if (rank < list.size() && (rank == 0 || !problem_of(list[rank - 1], images).empty()))
         wanted.push_back(list[rank].image);
-    decode_missing(document, wanted, images);
+    decode_missing(document, wanted, memory, images);
     looked_at.insert(wanted.begin(), wanted.end());
   }
   return looked_at;
@@ -121,32 +118,6 @@ TexturePixels magenta_texel() {
   return image;
 }
 
-/// KTX2 without an alpha that means anything takes three channels, as other files do.
-Image8 to_image(const ktx2::Texture& texture) {
-  const std::vector<uint8_t>& rgba = texture.rgba;
-  bool is_opaque = true;
-  for (size_t i = 3; i < rgba.size(); i += 4) is_opaque = is_opaque && rgba[i] == 255;
-  Image8 image(int(texture.width), int(texture.height), is_opaque ? 3 : 4);
-  for (size_t i = 0, at = 0; i < rgba.size(); i += 4)
-    for (size_t c = 0; c < size_t(image.channels); ++c) image.values[at++] = rgba[i + c];
-  return image;
-}
-
-void decode_ktx2(std::span<const uint8_t> bytes, const std::string& name, DecodedImage& image) {
-  try {
-    ktx2::Texture texture = ktx2::decode(bytes);
-    image.pixels = std::make_shared<const Image8>(to_image(texture));
-    image.remarks.insert(image.remarks.end(), texture.remarks.begin(), texture.remarks.end());
-    image.transfer = texture.transfer;
-    if (!texture.is_basis_universal)
-      image.basisu_problem = name +
-                             ": KTX2: its texels are uncompressed (vkFormat is not 0), the extension allows "
-                             "Basis Universal only";
-  } catch (const Error& e) {
-    image.problem = name + ": " + e.what();
-  }
-}
-
 /// glTF tells by what a texture is used for how it is read; a KTX2 file says so once more. Empty: they agree.
 std::string transfer_problem(const WantedTexture& wanted, const DecodedImage& image) {
   using Transfer = ktx2::TransferFunction;
@@ -161,51 +132,6 @@ std::string transfer_problem(const WantedTexture& wanted, const DecodedImage& im
                        stated);
   return {};
 }
-
-}  // namespace
-
-DecodedImage decode_image(const Document& document, int index) {
-  const ImageSource& source = document.images()[size_t(index)];
-  const std::string place = fmt::format("/images/{}", index);
-  DecodedImage image;
-  Bytes file;
-  std::span<const uint8_t> bytes;
-  if (source.view >= 0) {
-    bytes = document.view(source.view);
-  } else {
-    AssetContent content = document.files().read_uri(source.uri, place + "/uri");
-    if (!content.problem.empty()) {
-      image.problem = content.problem;
-      return image;
-    }
-    if (!content.remark.empty()) image.remarks.push_back(content.remark);
-    file = std::move(content.bytes);
-    bytes = file.span();
-    if (!is_data_uri(source.uri)) image.fingerprint = fingerprint(bytes);
-  }
-  const bool is_file = source.view < 0 && !is_data_uri(source.uri);
-  const std::string name =
-      document.files().scene_path() + place + (is_file ? fmt::format(" ({})", source.uri) : "");
-  if (ktx2::is_ktx2(bytes)) {
-    decode_ktx2(bytes, name, image);
-    return image;
-  }
-  try {
-    PartialImage decoded = decode_partial_image(bytes, name);
-    image.pixels = std::visit(
-        []<typename T>(BasicImage<T>& pixels) {
-          return TexturePixels(std::make_shared<const BasicImage<T>>(std::move(pixels)));
-        },
-        decoded.image);
-    if (!decoded.damage.empty()) image.remarks.push_back(decoded.damage);
-  } catch (const Error& e) {
-    if (e.kind() == ErrorKind::memory) throw;
-    image.problem = e.what();
-  }
-  return image;
-}
-
-namespace {
 
 /// A texture as messages call it.
 std::string called(const Document& document, int texture) {
@@ -235,6 +161,24 @@ void report(const Document& document, int texture, const Choice& choice, std::ve
                      problem + ". Where it colours a surface that is magenta, elsewhere it is left out"});
 }
 
+/// What textures will take that are not there yet, as far as the files' headers tell: of each the first image
+/// that it may be read from, and a roughness that is made of one.
+uint64_t new_bytes(const Document& document, const std::vector<WantedTexture>& wanted,
+                   const std::vector<std::vector<Candidate>>& candidates, const ImageCache& cache) {
+  const int from_file = int(document.model().textures.size());
+  std::map<int, uint64_t> of_images;
+  uint64_t bytes = 0;
+  for (size_t i = 0; i < wanted.size(); ++i) {
+    if (candidates[i].empty()) continue;
+    const int image = candidates[i].front().image;
+    const auto [expected, is_new] = of_images.try_emplace(image);
+    if (is_new) expected->second = expected_bytes(document, image);
+    if (is_new && !cache.images.contains(image)) bytes += expected->second;
+    if (wanted[i].index >= from_file && !cache.roughness.contains(wanted[i].index)) bytes += expected->second;
+  }
+  return bytes;
+}
+
 }  // namespace
 
 DecodedTextures read_textures(const Document& document, const std::vector<WantedTexture>& wanted,
@@ -245,10 +189,13 @@ DecodedTextures read_textures(const Document& document, const std::vector<Wanted
   const auto source_of = [&](int index) {
     return index < from_file ? index : derived[size_t(index - from_file)].texture;
   };
-  std::vector<int> sources;
-  sources.reserve(wanted.size());
-  for (const WantedTexture& texture : wanted) sources.push_back(source_of(texture.index));
-  const std::set<int> looked_at = decode_images(document, sources, cache.images);
+  std::vector<std::vector<Candidate>> candidates;
+  candidates.reserve(wanted.size());
+  for (const WantedTexture& texture : wanted)
+    candidates.push_back(candidates_of(textures[size_t(source_of(texture.index))]));
+  if (cache.memory.is_limited())
+    cache.memory.make_room(new_bytes(document, wanted, candidates, cache), notices);
+  const std::set<int> looked_at = decode_images(document, candidates, cache.memory, cache.images);
 
   DecodedTextures result;
   std::set<int> reported;
@@ -260,7 +207,9 @@ DecodedTextures read_textures(const Document& document, const std::vector<Wanted
     TexturePixels pixels = choice.image ? *choice.image->pixels : magenta_texel();
     if (choice.image && texture.index >= from_file) {
       const auto [roughness, is_new] = cache.roughness.try_emplace(texture.index);
-      if (is_new) roughness->second = roughness_of(pixels, derived[size_t(texture.index - from_file)].factor);
+      if (is_new)
+        roughness->second = cache.memory.keep(
+            roughness_of(in_memory(pixels), derived[size_t(texture.index - from_file)].factor));
       pixels = roughness->second;
     } else if (choice.image) {
       if (const std::string problem = transfer_problem(texture, *choice.image); !problem.empty())

@@ -1,29 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
+#include <map>
 #include <string>
 #include <vector>
 
-#include "core/ktx2/ktx2.h"
+#include "scene/import/decode_image.h"
 #include "scene/import/document.h"
 #include "scene/import/specular_glossiness.h"
+#include "scene/import/texture_memory.h"
 #include "vernier/scene.h"
 
 namespace vernier {
-
-/// An image of a file, decoded.
-struct DecodedImage {
-  std::optional<TexturePixels> pixels;             ///< empty: missing or cannot be decoded
-  std::string problem;                             ///< why there are no pixels
-  std::vector<std::string> remarks;                ///< what a user should know about those there are
-  std::string fingerprint;                         ///< empty: in a buffer or not read
-  std::optional<ktx2::TransferFunction> transfer;  ///< that the file states; other kinds of files do not
-  std::string basisu_problem;  ///< why KHR_texture_basisu does not allow the pixels; empty: it does
-};
-
-/// Reads and decodes an image by its index. Throws Error(input) on a reference that is not to be followed.
-DecodedImage decode_image(const Document& document, int index);
 
 /// A texture that materials use, and what for.
 struct WantedTexture {
@@ -42,6 +30,7 @@ struct DecodedTextures {
 struct ImageCache {
   std::map<int, DecodedImage> images;      ///< by the file's index
   std::map<int, TexturePixels> roughness;  ///< by that of `derived`
+  TextureMemory memory;                    ///< where they are
 };
 
 /// Reads and decodes the textures asked for, in parallel; textures of one image share its pixels. They are
@@ -49,7 +38,7 @@ struct ImageCache {
 /// missing or cannot be decoded the texture's own stands for it, and a magenta texel for that, each with a
 /// notice. Throws Error(input) on a reference that is not to be followed, and where the file requires the
 /// extension of an image that nothing stands for. What `cache` holds is not decoded again, and the rest is
-/// added to it.
+/// added to it; Error(output) is thrown where its memory needs a file and can have none.
 DecodedTextures read_textures(const Document& document, const std::vector<WantedTexture>& wanted,
                               const std::vector<RoughnessFromGlossiness>& derived, ImageCache& cache,
                               std::vector<Notice>& notices);

@@ -36,6 +36,19 @@ TEST(Quantities, SecondsThatMakeNoSense) {
   EXPECT_THROW(parse_seconds(""), Error);
 }
 
+TEST(Quantities, AmountsOfMemory) {
+  EXPECT_EQ(parse_bytes("3000000000"), 3000000000u);
+  EXPECT_EQ(parse_bytes("2G"), 2000000000u);
+  EXPECT_EQ(parse_bytes("1.5 GB"), 1500000000u);
+  EXPECT_EQ(parse_bytes("2GiB"), uint64_t{2} << 30);
+  EXPECT_EQ(parse_bytes("3Mi"), uint64_t{3} << 20);
+  EXPECT_EQ(parse_bytes("12k"), 12000u);
+  EXPECT_EQ(parse_bytes("1TB"), 1000000000000u);
+  for (const char* text : {"0", "0.5", "-1G", "G", "2X", "2GG", "2 G B", "1e30", "inf", "2g", "2iB"})
+    expect_refused(parse_bytes, text);
+  EXPECT_THROW(parse_bytes(""), Error);
+}
+
 TEST(Quantities, Margins) {
   EXPECT_FLOAT_EQ(parse_margin("8%"), 0.08f);
   EXPECT_FLOAT_EQ(parse_margin("0.08"), 0.08f);
