@@ -220,9 +220,8 @@ PlacedTriangle SceneGeometry::placed_triangle(uint32_t instance, uint32_t primit
   if (!placed.is_identity) {
     error = mapped_error(placed.to_world, error, magnitude);
     for (Vec3f& corner : corners) corner = placed.to_world.point(corner);
-    if (placed.orientation < 0) std::swap(corners[1], corners[2]);
   }
-  return {corners, error};
+  return {corners, error, placed.orientation < 0};
 }
 
 SurfacePoint SceneGeometry::surface_point(uint32_t instance, uint32_t primitive,

@@ -15,8 +15,9 @@ namespace vernier {
 
 /// A triangle in the world.
 struct PlacedTriangle {
-  std::array<Vec3f, 3> corners;  ///< counter-clockwise seen from its front
+  std::array<Vec3f, 3> corners;  ///< in the mesh's order, which is that of barycentrics
   Vec3f error;                   ///< bound on that of each of its points, as SurfacePoint::error
+  bool is_mirrored = false;      ///< the corners are clockwise seen from its front
 };
 
 /// The scene's triangles: meshes, their instances, and what lies at a point of one. A mesh with a single
@@ -62,7 +63,7 @@ class SceneGeometry {
   /// World-space corners of a triangle in winding order (counter-clockwise seen from its front).
   std::array<Vec3f, 3> triangle(uint32_t instance, uint32_t primitive) const;
   std::array<Vec3f, 3> triangle(uint32_t instance, uint32_t primitive, float time) const;
-  /// The same with what rounding may make of it, for lights that are looked at very often.
+  /// With what rounding may make of it, for lights that are looked at very often.
   PlacedTriangle placed_triangle(uint32_t instance, uint32_t primitive, float time) const;
   /// Normals at these corners, world space, front side, of any length: between them it is those that are
   /// interpolated, and then made unit vectors. Empty where a mesh has none.

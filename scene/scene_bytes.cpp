@@ -4,9 +4,9 @@
 namespace vernier {
 
 uint64_t bytes_to_build(const SceneDescription& scene) {
-  // Of 2 million triangles in a mesh the peak was 90 bytes each, of a million that glow 800; instances keep
+  // Of 2 million triangles in a mesh the peak was 90 bytes each, of a million that glow 460; instances keep
   // 606 (docs/speed.md).
-  constexpr uint64_t of_triangle = 100, of_glowing_triangle = 700, of_instance = 700;
+  constexpr uint64_t of_triangle = 100, of_glowing_triangle = 400, of_instance = 700;
   uint64_t bytes = scene.instances.size() * of_instance;
   for (const MeshDescription& mesh : scene.meshes) bytes += mesh.triangles.size() * of_triangle;
   for (const InstanceDescription& instance : scene.instances)

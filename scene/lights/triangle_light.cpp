@@ -110,7 +110,7 @@ LightShape TriangleLight::shape_at(float time) const {
   const SceneGeometry& geometry = *mesh_->geometry_;
   const PlacedTriangle own = geometry.placed_triangle(mesh_->instance_, primitive_, time);
   const auto& [a, b, c] = own.corners;
-  const Vec3f across = doubled_area(a, b, c);
+  const Vec3f across = doubled_area(a, b, c) * (own.is_mirrored ? -1.f : 1.f);
   const float doubled = length(across);
   LightShape shape{own.corners, {}, doubled > 0 ? across / doubled : Vec3f(0, 0, 1), own.error, doubled / 2};
   if (!is_joined()) return shape;

@@ -43,7 +43,12 @@ void expect_near(const Vec3f& found, const Vec3f& expected, const char* what) {
 /// What is told of a whole triangle at once is what is told of its corners.
 void expect_same_triangle(const SceneGeometry& geometry, uint32_t primitive) {
   const PlacedTriangle placed = geometry.placed_triangle(0, primitive, middle_of_shutter);
-  EXPECT_EQ(placed.corners, geometry.triangle(0, primitive));
+  for (size_t k = 0; k < 3; ++k) {
+    const SurfacePoint corner = geometry.surface_point(0, primitive, {float(k == 1), float(k == 2)});
+    expect_near(placed.corners[k], corner.position, "corner");
+    const auto& [a, b, c] = placed.corners;
+    EXPECT_EQ(dot(cross(b - a, c - a), corner.ng) < 0, placed.is_mirrored);
+  }
   for (const Vec2f& corner : {Vec2f(0, 0), Vec2f(1, 0), Vec2f(0, 1)}) {
     const Vec3f error = geometry.surface_point(0, primitive, corner).error;
     for (int axis = 0; axis < 3; ++axis) {

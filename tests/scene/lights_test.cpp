@@ -199,6 +199,35 @@ TEST(Lights, NearAndTexturedLampsFitTheirDensity) {
   }
 }
 
+// Texels are where the triangles' barycentrics put them, whichever way round an instance turns its corners.
+TEST(Lights, AMirroredLampShinesFromItsLitTexels) {
+  const SceneBuilder lamp = standing_lamp(textured_emitter(2)).texture(45, 45, few_lit_texels());
+  SceneDescription description = lamp.description();
+  InstanceDescription mirrored = description.instances.back();
+  mirrored.to_world = {{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {3, 0, 0}};
+  description.instances.push_back(mirrored);
+  const Scene scene(std::move(description), {});
+  const auto from = scene.intersect(ray_through({3, 0.2f, 2}, {3, 0, 2}));
+  ASSERT_TRUE(from);
+  Random random(43);
+  int met = 0, apart = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const float u = random.next1();
+    const auto sample = scene.sample_light(*from, u, random.next2());
+    if (!sample) continue;
+    const Ray ray = from->spawn(sample->wi);
+    const auto hit = scene.intersect(ray);
+    if (!hit || hit->instance != 2) continue;
+    const LightEval eval = scene.emitted(&*from, ray, &*hit);
+    ++met;
+    apart += !(std::abs(eval.radiance.x - sample->radiance.x) <= 1e-3f &&
+               std::abs(eval.pdf / sample->pdf - 1) < 1e-3f);
+  }
+  EXPECT_GT(met, 5000);
+  // By the edges of texels, rounding may tell them apart.
+  EXPECT_LE(apart, met / 500);
+}
+
 // Integral over all directions of the density with which light sampling picks them: one, less the probability
 // of lights that no ray meets, and of samples that come to nothing because a lamp's dark side faces the point
 // or another lamp hides it.
