@@ -20,27 +20,7 @@ class TriangleLight::View {
  public:
   /// At a time of the shutter.
   View(const TriangleLight& light, const Vec3f& from, float time)
-      : light_(light),
-        found_(light.ready_shape() ? std::nullopt : std::optional(light.shape_at(time))),
-        shape_(found_ ? *found_ : *light.ready_shape()),
-        texture_(light.texture()) {
-    const auto& [a, b, c] = shape_.corners;
-    const std::optional<Vec3f>& opposite = shape_.opposite;
-    is_dark_ = !light.mesh_->material_->double_sided() && !(dot(from - a, shape_.normal) > 0);
-    if (is_dark_ || texture_) return;
-    const Vec3f center = opposite ? (b + c) * 0.5f : (a + b + c) * (1 / 3.f);
-    float near2 = std::max({length_squared(b - a), length_squared(c - b), length_squared(a - c)});
-    if (opposite) near2 = std::max(near2, length_squared(*opposite - a));
-    if (length_squared(center - from) > near2) return;
-    first_.emplace(a - from, b - from, c - from, doubled_area(a, b, c));
-    solid_angle_ = first_->solid_angle();
-    if (!opposite) return;
-    // Its arcs go on where those of the first end.
-    const Vec3f& d = *opposite;
-    second_.emplace(c - from, b - from, d - from, doubled_area(c, b, d));
-    solid_angle_ += second_->solid_angle();
-  }
-
+      : View(light, from, time, light.ready_shape()) {}
   View(const View&) = delete;
   View& operator=(const View&) = delete;
 
@@ -72,6 +52,28 @@ class TriangleLight::View {
   }
 
  private:
+  View(const TriangleLight& light, const Vec3f& from, float time, const LightShape* ready)
+      : light_(light),
+        found_(ready ? std::nullopt : std::optional(light.shape_at(time))),
+        shape_(ready ? *ready : *found_),
+        texture_(light.texture()) {
+    const auto& [a, b, c] = shape_.corners;
+    const std::optional<Vec3f>& opposite = shape_.opposite;
+    is_dark_ = !light.mesh_->material_->double_sided() && !(dot(from - a, shape_.normal) > 0);
+    if (is_dark_ || texture_) return;
+    const Vec3f center = opposite ? (b + c) * 0.5f : (a + b + c) * (1 / 3.f);
+    float near2 = std::max({length_squared(b - a), length_squared(c - b), length_squared(a - c)});
+    if (opposite) near2 = std::max(near2, length_squared(*opposite - a));
+    if (length_squared(center - from) > near2) return;
+    first_.emplace(a - from, b - from, c - from, doubled_area(a, b, c));
+    solid_angle_ = first_->solid_angle();
+    if (!opposite) return;
+    // Its arcs go on where those of the first end.
+    const Vec3f& d = *opposite;
+    second_.emplace(c - from, b - from, d - from, doubled_area(c, b, d));
+    solid_angle_ += second_->solid_angle();
+  }
+
   const TriangleLight& light_;
   const std::optional<LightShape> found_;  ///< unless it is ready
   const LightShape& shape_;

@@ -45,11 +45,12 @@ std::string textured_walls(const TemporaryFolder& folder) {
 
 class MaxMemory : public testing::Test {
  protected:
-  ProcessResult render(const std::string& scene, const std::vector<std::string>& more) {
+  ProcessResult render(const std::string& scene, const std::vector<std::string>& more,
+                       const std::string& size = "160x120") {
     std::vector<std::string> all{"render",     scene,
                                  "-o",         folder_.file("a.exr"),
                                  "--stats",    folder_.file("stats.json"),
-                                 "--size",     "160x120",
+                                 "--size",     size,
                                  "--spp",      "4",
                                  "--env",      "studio",
                                  "--progress", "none",
@@ -95,10 +96,10 @@ TEST_F(MaxMemory, IsNotToldWhereAllFits) {
 }
 
 TEST_F(MaxMemory, RefusesWhatCannotBeDoneWithIt) {
-  const ProcessResult scene = render(two_spheres, {"--max-memory", "20 MB", "--size", "16x16"});
+  const ProcessResult scene = render(two_spheres, {"--max-memory", "20 MB"}, "16x16");
   EXPECT_EQ(scene.exit_code, 4) << scene.err;
   EXPECT_THAT(scene.err, HasSubstr("--max-memory is 20.0 MB"));
-  const ProcessResult picture = render(two_spheres, {"--max-memory", "2GiB", "--size", "8192x8192"});
+  const ProcessResult picture = render(two_spheres, {"--max-memory", "2GiB"}, "8192x8192");
   EXPECT_EQ(picture.exit_code, 4) << picture.err;
   EXPECT_THAT(picture.err, HasSubstr("a picture of 67.1 M pixels needs "));
   EXPECT_THAT(picture.err, HasSubstr("--max-memory is 2.15 GB"));
