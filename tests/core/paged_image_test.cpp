@@ -39,7 +39,7 @@ template <typename T>
 BasicImage<T> noise(int width, int height, int channels) {
   BasicImage<T> image(width, height, channels);
   Random random(uint64_t(width * 7 + height * 3 + channels));
-  for (T& value : image.values) value = T(random.next1() * 65536);
+  for (T& value : image.values) value = T(uint32_t(random.next1() * 65536));
   return image;
 }
 

@@ -14,7 +14,7 @@ template <typename T>
 PixelsInMemory noise(int width, int height, int channels) {
   auto image = std::make_shared<BasicImage<T>>(width, height, channels);
   Random random{uint64_t(channels)};
-  for (T& value : image->values) value = T(random.next1() * 65536);
+  for (T& value : image->values) value = T(uint32_t(random.next1() * 65536));
   return image;
 }
 
