@@ -12,7 +12,7 @@ namespace {
 /// Beyond this a tree is quicker (docs/speed.md).
 constexpr size_t most_triangles = 64;
 /// Roundings to float, here and in intersect_watertight(), are each below 2^-24 of what the sizes of edges,
-/// moments and rays allow. Some ten add up; this is six times as many, which makes no ray slower.
+/// moments and rays allow. Some ten add up; this is six times as many.
 constexpr double rounding_share = 0x1p-18;
 
 double sum_of_sizes(const Vec3d& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
