@@ -41,6 +41,8 @@ ConvergencePlan checked_plan(const Flags& flags) {
   std::vector<std::string> accelerator_names;
   for (const AcceleratorEntry* entry : accelerators_named(plan.accelerators))
     accelerator_names.emplace_back(entry->name);
+  // Else the one that a render of each scene would take.
+  if (accelerator_names.empty()) accelerator_names.emplace_back();
   plan.accelerators = accelerator_names;
   for (const auto& time : flags.times) plan.times.push_back(parse_seconds(time));
   std::sort(plan.times.begin(), plan.times.end());
@@ -139,12 +141,12 @@ void add_plan_flags(CLI::App& command, Flags& flags) {
   ConvergencePlan& plan = flags.plan;
   command.add_option("SCENES", plan.scenes, "glTF 2.0 scenes")->type_name("");
   const auto names = [&](const char* flag, std::vector<std::string>& target, const char* description) {
-    command.add_option(flag, target, description)->delimiter(',')->type_name("NAMES")->capture_default_str();
+    return command.add_option(flag, target, description)->delimiter(',')->type_name("NAMES");
   };
   plan.integrators = {"path"};
-  plan.accelerators = {std::string(accelerators().front().name)};
-  names("--integrator", plan.integrators, "which to measure, separated by commas");
-  names("--accelerator", plan.accelerators, "which to measure, separated by commas, or all");
+  names("--integrator", plan.integrators, "which to measure, separated by commas")->capture_default_str();
+  names("--accelerator", plan.accelerators,
+        "which to measure, separated by commas, or all (as render takes)");
   command.add_option("--reference", plan.references, "picture to measure against, once a scene, in order")
       ->type_name("FILE")
       ->allow_extra_args(false);

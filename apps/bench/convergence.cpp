@@ -201,7 +201,7 @@ std::vector<Candidate> make_candidates(const ConvergencePlan& plan, const SceneD
     for (const auto& name : plan.integrators) {
       Candidate& candidate = candidates.emplace_back();
       candidate.integrator_name = name;
-      candidate.accelerator_name = accelerator;
+      candidate.accelerator_name = scenes.back()->accelerator_name();
       candidate.integrator =
           find_by_name(integrators(), "integrator", name).make(plan.render.integrator_options);
       candidate.scene = scenes.back().get();

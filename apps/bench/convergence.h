@@ -14,8 +14,9 @@
 namespace vernier::apps {
 
 struct ConvergencePlan {
-  std::vector<std::string> scenes, integrators, accelerators;  ///< names, checked
-  std::vector<std::string> references;                         ///< files, one a scene; empty: rendered
+  /// Names, checked; of an accelerator, empty: what a scene takes by itself.
+  std::vector<std::string> scenes, integrators, accelerators;
+  std::vector<std::string> references;  ///< files, one a scene; empty: rendered
   int reference_spp = 0;
   std::vector<double> times;  ///< seconds of rendering, rising
   int seeds = 0;

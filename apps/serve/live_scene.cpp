@@ -74,7 +74,11 @@ std::optional<Surroundings> LiveScene::read(const SurroundingsFlags& flags) {
   if (flags.environment.empty()) return read_surroundings(flags);
   auto plain = plain_.find(flags.environment);
   if (plain == plain_.end())
-    plain = plain_.emplace(flags.environment, *read_surroundings({flags.environment})).first;
+    plain =
+        plain_
+            .emplace(flags.environment,
+                     *read_surroundings({.environment = flags.environment, .max_memory = flags.max_memory}))
+            .first;
   return turned_and_scaled(plain->second, flags);
 }
 

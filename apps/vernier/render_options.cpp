@@ -205,6 +205,7 @@ RenderRequest check_render_flags(const RenderFlags& given) {
   if (!flags.denoise.empty()) request.denoiser = &find_denoiser(flags.denoise);
   MemoryLimit& limit = request.flags.import.memory;
   if (request.settings.width > 0) check_picture_size(request.settings, memory_use(request), limit);
+  request.flags.surroundings.max_memory = limit.bytes;
   limit = leaving_room_for_pictures(limit, request.settings, memory_use(request));
   request.display = choose_display(flags);
   check_surroundings(flags.surroundings);

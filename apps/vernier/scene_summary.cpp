@@ -43,7 +43,7 @@ SceneCounts count(const SceneDescription& scene) {
 }
 
 std::string texture_bytes_text(const SceneCounts& counts) {
-  const std::string decoded = format_bytes(double(counts.texture_bytes)) + " decoded";
+  std::string decoded = format_bytes(double(counts.texture_bytes)) + " decoded";
   if (counts.texture_bytes_in_file == 0) return decoded;
   return fmt::format("{}, {} of it in a file", decoded, format_bytes(double(counts.texture_bytes_in_file)));
 }

@@ -10,6 +10,7 @@
 
 #include "apps/vernier/flags.h"
 #include "core/base/names.h"
+#include "core/base/resident_memory.h"
 #include "core/image/image_io.h"
 #include "integrators/render/visible_light.h"
 #include "scene/camera.h"
@@ -62,6 +63,18 @@ std::shared_ptr<const EnvironmentDescription> turned(const Surroundings& surroun
   return environment;
 }
 
+ImageLimits limits_within(uint64_t max_memory) {
+  // What reading one takes at its peak, of EXR with halves: 35 bytes a pixel; what stays and its tables are
+  // less.
+  constexpr uint64_t bytes_per_pixel = 36;
+  ImageLimits limits;
+  if (max_memory == 0) return limits;
+  const uint64_t left = max_memory - std::min(max_memory, resident_bytes());
+  limits.max_pixels = std::min(limits.max_pixels, int64_t(left / bytes_per_pixel));
+  limits.advice = "scale it down, or raise --max-memory";
+  return limits;
+}
+
 }  // namespace
 
 void add_surroundings_flags(CLI::App& command, SurroundingsFlags& flags) {
@@ -78,11 +91,11 @@ void add_surroundings_flags(CLI::App& command, SurroundingsFlags& flags) {
       ->type_name("S");
 }
 
-std::shared_ptr<const Image> EnvironmentPictures::read(const std::string& file) {
+std::shared_ptr<const Image> EnvironmentPictures::read(const std::string& file, uint64_t max_memory) {
   const std::scoped_lock lock(mutex_);
   std::weak_ptr<const Image>& kept = pictures_[file];
   std::shared_ptr<const Image> picture = kept.lock();
-  if (!picture) kept = picture = std::make_shared<const Image>(read_image(file));
+  if (!picture) kept = picture = std::make_shared<const Image>(read_image(file, limits_within(max_memory)));
   return picture;
 }
 
@@ -106,7 +119,7 @@ std::optional<Surroundings> read_surroundings(const SurroundingsFlags& flags, En
   for (const auto& entry : built_in_environments())
     if (entry.name == flags.environment) return turned_and_scaled(built_in(entry), flags);
   auto environment = std::make_shared<EnvironmentDescription>();
-  environment->picture = pictures.read(flags.environment);
+  environment->picture = pictures.read(flags.environment, flags.max_memory);
   return turned_and_scaled({flags.environment, std::move(environment)}, flags);
 }
 

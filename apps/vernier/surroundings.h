@@ -19,11 +19,12 @@ class Scene;
 
 namespace apps {
 
-/// --env, --env-rotate and --env-scale, as typed.
+/// --env, --env-rotate and --env-scale, as typed, and what memory there is for them.
 struct SurroundingsFlags {
   std::string environment;  ///< none, a built-in one, a file; empty: not given
   float rotate = 0;         ///< degrees
   float scale = 1;
+  uint64_t max_memory = 0;  ///< --max-memory in bytes; 0: without
 };
 
 /// Declares the flags on `command`.
@@ -39,8 +40,8 @@ struct Surroundings {
 /// Pictures of surroundings, each decoded once for as long as somebody has it. For several threads at a time.
 class EnvironmentPictures {
  public:
-  /// Throws Error(input).
-  std::shared_ptr<const Image> read(const std::string& file);
+  /// Throws Error(input), also where a picture has no room within `max_memory` (0: without).
+  std::shared_ptr<const Image> read(const std::string& file, uint64_t max_memory);
 
  private:
   std::mutex mutex_;

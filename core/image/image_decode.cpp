@@ -94,15 +94,18 @@ class MemoryInput {
 
   bool has_sixteen_bits() const { return input_->spec().format == OIIO::TypeDesc::UINT16; }
 
-  /// In the file's own type, which T must be.
   template <typename T>
   BasicImage<T> read() {
     const OIIO::ImageSpec spec = input_->spec();
     BasicImage<T> image(spec.width, spec.height, spec.nchannels);
     input_->threads(1);  // callers decode many images at once
-    // read_image would take 64 MB beside the picture, however small it is, to convert what needs no
-    // conversion.
-    if (!input_->read_native_scanlines(0, 0, spec.y, spec.y + spec.height, 0, image.values.data()))
+    // To convert, read_image takes 64 MB beside the picture, however small it is.
+    constexpr OIIO::TypeDesc type = OIIO::BaseTypeFromC<T>::value;
+    const bool is_read =
+        spec.format == type
+            ? input_->read_native_scanlines(0, 0, spec.y, spec.y + spec.height, 0, image.values.data())
+            : input_->read_image(0, 0, 0, spec.nchannels, type, image.values.data());
+    if (!is_read)
       throw input_error(name_, fmt::format("cannot decode image, it is damaged: {}", input_->geterror()));
     return image;
   }
@@ -173,9 +176,8 @@ void check_image_size(const std::string& name, int64_t width, int64_t height, in
   if (width <= 0 || height <= 0)
     throw input_error(name, fmt::format("image of size {}x{} has no pixels", width, height));
   if (height > limits.max_pixels / width)
-    throw input_error(
-        name, fmt::format("image of {}x{} pixels is larger than the limit of {} pixels; scale it down", width,
-                          height, limits.max_pixels));
+    throw input_error(name, fmt::format("image of {}x{} pixels is larger than the limit of {} pixels; {}",
+                                        width, height, limits.max_pixels, limits.advice));
   if (channels < 1 || channels > max_channels)
     throw input_error(
         name, fmt::format("image with {} channels cannot be used; expected 1 to {}", channels, max_channels));

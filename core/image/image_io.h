@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -19,6 +20,7 @@ namespace vernier {
 /// hostile file cannot ask for gigabytes.
 struct ImageLimits {
   int64_t max_pixels = int64_t{1} << 28;
+  std::string_view advice = "scale it down";  ///< to who has a larger one
 };
 
 /// Reads any file OpenImageIO knows as float RGB, values as stored: HDR and EXR files are linear already,

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "scene/lights/light_group.h"
+#include "scene/lights/sine.h"
 
 namespace vernier {
 
@@ -44,11 +45,6 @@ class LightCosts {
     Float8 solid_angle() const;
   };
 
-  static Float8 sine(const Float8& cosine) {
-    Float8 square = 1 - cosine * cosine;
-    keep_greater(Float8{}, square);
-    return square_root(square);
-  }
   /// To 7e-5 (Abramowitz and Stegun 1964, "Handbook of Mathematical Functions", 4.4.45).
   static Float8 arc_cosine(const Float8& x) {
     const Float8 positive = x < 0 ? -x : x;
@@ -82,9 +78,9 @@ template <int batches>
 Float8 LightCosts<batches>::Batch::solid_angle() const {
   // The spread of the axes and that of each light about its own.
   const Float8 axes = cos_of_axes();
-  const Float8 both = axes * cos_spread - sine(axes) * sine(cos_spread);
-  const Float8 cos_all = axes > -cos_spread ? both : Float8{} - 1, sin_all = sine(cos_all);
-  const Float8 sin_emission = sine(cos_emission);
+  const Float8 both = axes * cos_spread - sine_of(axes) * sine_of(cos_spread);
+  const Float8 cos_all = axes > -cos_spread ? both : Float8{} - 1, sin_all = sine_of(cos_all);
+  const Float8 sin_emission = sine_of(cos_emission);
   // What is covered with less than full strength begins at the spread and ends at `widest`.
   const Mask8 everywhere = cos_all <= -cos_emission;
   const Float8 spread = arc_cosine(cos_all), emission = arc_cosine(cos_emission);

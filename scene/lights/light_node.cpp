@@ -2,15 +2,10 @@
 #include "scene/lights/light_node.h"
 
 #include "core/math/rounding.h"
+#include "scene/lights/sine.h"
 
 namespace vernier {
 namespace {
-
-Float8 sine(const Float8& cosine) {
-  Float8 square = 1 - cosine * cosine;
-  keep_greater(Float8{}, square);
-  return square_root(square);
-}
 
 /// cos(max(0, a - b)) of two angles in [0, pi] given by cosine and sine.
 Float8 cos_difference(const Float8& sin_a, const Float8& cos_a, const Float8& sin_b, const Float8& cos_b) {
@@ -102,15 +97,15 @@ Float8 LightNode::importance(const LightReceiver& receiver) const {
       -(floats_of(axis_x_) * x + floats_of(axis_y_) * y + floats_of(axis_z_) * z) * (inverse / axis_parts);
   const Mask8 two_sided = ((Mask8{} + two_sided_) & Mask8{1, 2, 4, 8, 16, 32, 64, 128}) != 0;
   cos_axis = (two_sided & (cos_axis < 0)) ? -cos_axis : cos_axis;
-  const Float8 cos_nearest = cos_difference(sine(cos_axis), cos_axis, sin_spread, cos_spread);
-  Float8 cos_emitted = cos_difference(sine(cos_nearest), cos_nearest, sin_sphere, cos_sphere);
+  const Float8 cos_nearest = cos_difference(sine_of(cos_axis), cos_axis, sin_spread, cos_spread);
+  Float8 cos_emitted = cos_difference(sine_of(cos_nearest), cos_nearest, sin_sphere, cos_sphere);
   Mask8 lit = cos_emitted > floats_of(cos_emission_) * (1 / emission_parts) - slack;
   keep_greater(Float8{} + slack, cos_emitted);
 
   if (receiver.normal != Vec3f(0, 0, 0)) {
     const Float8 cos_center =
         (receiver.normal.x * x + receiver.normal.y * y + receiver.normal.z * z) * inverse;
-    Float8 cos_incident = cos_difference(sine(cos_center), cos_center, sin_sphere, cos_sphere);
+    Float8 cos_incident = cos_difference(sine_of(cos_center), cos_center, sin_sphere, cos_sphere);
     lit &= cos_incident > -slack;
     keep_greater(Float8{} + slack, cos_incident);
     cos_emitted *= cos_incident;

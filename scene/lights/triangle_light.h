@@ -15,7 +15,7 @@ class TriangleLight;
 
 /// Where a triangle light is at one time.
 struct LightShape {
-  std::array<Vec3f, 3> corners;   ///< world, counter-clockwise seen from the front
+  std::array<Vec3f, 3> corners;   ///< world, in the order of barycentrics
   std::optional<Vec3f> opposite;  ///< of a parallelogram: the corner that lies across from the first
   Vec3f normal;                   ///< unit, of the front
   Vec3f error;                    ///< bound on the rounding of any point between the corners

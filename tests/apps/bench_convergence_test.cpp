@@ -76,6 +76,7 @@ TEST(BenchConvergence, TimesTooShortForMoreSamplesHaveNoSlope) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const json report = json::parse(test::read_file(folder.file("out/convergence.json")));
   EXPECT_EQ(report["times"].size(), 2u);
+  EXPECT_EQ(report["scenes"][0]["candidates"][0]["accelerator"], "list") << "as a render takes";
   EXPECT_TRUE(report["scenes"][0]["candidates"][0]["fit"].is_null());
 }
 
