@@ -83,13 +83,15 @@ TEST(RandomScenes, TechniquesAgree) {
     const uint64_t seed = k + 1;
     const RandomScene random = random_scene(seed);
     const Scene bvh(random.description, {"bvh"}), embree(random.description, {"embree"});
-    for (size_t r = 0; r < random.rays.size(); ++r)
+    for (size_t r = 0; r < random.rays.size(); ++r) {
+      const Ray& ray = random.rays[r];
+      Baseline<std::array<Samples, 3>> by_reference(
+          [&](uint64_t s, uint64_t factor) { return radiance(bvh, reference, random, ray, 2 * s, factor); });
       for (const Technique& technique : others) {
         if (random.has_lamps && technique.sampling == LightSampling::bsdf) continue;
         const Scene& scene = std::string_view(technique.accelerator) == "embree" ? embree : bvh;
         const bool agree = confirmed(significance, 1, [&](uint64_t s, uint64_t factor) {
-          const Ray& ray = random.rays[r];
-          return difference(radiance(bvh, reference, random, ray, 2 * s, factor),
+          return difference(by_reference(s, factor),
                             radiance(scene, technique, random, ray, 2 * s + 1, factor));
         });
         if (agree) continue;
@@ -97,6 +99,7 @@ TEST(RandomScenes, TechniquesAgree) {
         ADD_FAILURE() << "scene " << seed << " (" << written(random, seed) << "), ray " << r << ", depth "
                       << random.max_depth << ": mis against " << technique.name;
       }
+    }
   });
 }
 

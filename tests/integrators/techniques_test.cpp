@@ -277,21 +277,25 @@ TEST(Techniques, Agree) {
     };
     const double significance = sidak(1e-3, 64);
     const auto resolved = [&](const Technique& technique, uint64_t seed, uint64_t factor) {
-      for (int samples = 1 << 8; samples <= 1 << 17; samples *= 2) {
+      for (int samples = 1 << 8, more = 2; samples <= 1 << 17; samples *= more) {
         const Samples measured = run(technique, seed, samples);
         // Two such errors add to that of a difference.
         const double error = std::numbers::sqrt2 * measured.standard_error();
-        if (detectable_bias(error, significance) <= coarsening * view.resolution * measured.mean())
-          return factor == 1 ? measured : run(technique, seed, samples * int(factor));
+        const double excess =
+            detectable_bias(error, significance) / (coarsening * view.resolution * measured.mean());
+        if (excess <= 1) return factor == 1 ? measured : run(technique, seed, samples * int(factor));
+        more = excess > 4 ? 8 : excess > 2 ? 4 : 2;
       }
       ADD_FAILURE() << view.name << ": " << technique.name << " is too noisy to compare";
       return run(technique, seed, 1);
     };
+    Baseline<Samples> by_first(
+        [&](uint64_t seed, uint64_t factor) { return resolved(techniques[0], seed, factor); });
     for (const Technique& technique : std::span(techniques).subspan(1)) {
       if (view.has_lamps && technique.sampling == LightSampling::bsdf) continue;
       EXPECT_TRUE(confirmed(significance, 1,
                             [&](uint64_t seed, uint64_t factor) {
-                              return welch_p_value(resolved(techniques[0], seed, factor),
+                              return welch_p_value(by_first(seed, factor),
                                                    resolved(technique, seed + 100, factor));
                             }))
           << view.name << ": " << techniques[0].name << " against " << technique.name;

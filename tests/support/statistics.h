@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
+#include <utility>
 
 // Hypothesis tests. Each p-value is the probability of data at least this far off when the code is right.
 // Seeds are fixed, so a test that passes once passes always; the significance levels say how often an honest
@@ -56,5 +58,25 @@ double detectable_bias(double standard_error, double significance);
 /// True when either run passes.
 bool confirmed(double significance, uint64_t samples,
                const std::function<double(uint64_t seed, uint64_t samples)>& p_value);
+
+/// What several comparisons are made with, measured once for each seed and number of samples that `confirmed`
+/// asks for.
+template <typename Result>
+class Baseline {
+ public:
+  using Measure = std::function<Result(uint64_t seed, uint64_t samples)>;
+  explicit Baseline(Measure measure) : measure_(std::move(measure)) {}
+
+  const Result& operator()(uint64_t seed, uint64_t samples) {
+    auto known = results_.find({seed, samples});
+    if (known == results_.end())
+      known = results_.emplace(std::pair(seed, samples), measure_(seed, samples)).first;
+    return known->second;
+  }
+
+ private:
+  Measure measure_;
+  std::map<std::pair<uint64_t, uint64_t>, Result> results_;
+};
 
 }  // namespace vernier::test
