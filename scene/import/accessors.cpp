@@ -12,8 +12,13 @@
 namespace vernier {
 namespace {
 
-// An accessor without data is all zeros and costs the file nothing: this bounds what it may cost us.
-constexpr size_t max_elements_without_data = size_t{1} << 24;
+/// An accessor without data is all zeros and costs the file nothing; this bounds what it may cost us, a
+/// kilobyte an element where these are instances. Next to data it has as many elements as those, of some
+/// bytes.
+size_t max_elements_without_data(const Document& document) {
+  constexpr size_t usual = size_t{1} << 19;
+  return std::max(usual, document.buffer_bytes());
+}
 
 std::string place_of(int accessor) { return fmt::format("/accessors/{}", accessor); }
 
@@ -159,10 +164,9 @@ ElementArray locate_elements(const Document& document, int index) {
   elements.normalized = accessor.normalized;
   if (accessor.bufferView >= 0)
     return elements_in_view(document, place_of(index), accessor.bufferView, accessor.byteOffset, elements);
-  if (accessor.count > max_elements_without_data)
+  if (const size_t most = max_elements_without_data(document); accessor.count > most)
     document.fail(place_of(index) + "/count",
-                  fmt::format("{} elements without a bufferView; at most {} are read", accessor.count,
-                              max_elements_without_data));
+                  fmt::format("{} elements without a bufferView; at most {} are read", accessor.count, most));
   return elements;
 }
 

@@ -241,6 +241,12 @@ std::span<const uint8_t> Document::view(int index) const {
   return bytes;
 }
 
+size_t Document::buffer_bytes() const {
+  size_t sum = 0;
+  for (const auto& buffer : buffers_) sum += buffer.size();
+  return sum;
+}
+
 void Document::locate_views() {
   const auto& views = model_.bufferViews;
   views_.resize(views.size());

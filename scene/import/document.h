@@ -47,6 +47,8 @@ class Document {
 
   /// Bytes of a buffer view, decompressed. Throws Error(input) when its buffer has no data.
   std::span<const uint8_t> view(int index) const;
+  /// Of all buffers together, as the file has them.
+  size_t buffer_bytes() const;
 
   /// Fingerprints of the scene file and the buffers read, in order.
   const std::vector<std::string>& fingerprints() const { return fingerprints_; }

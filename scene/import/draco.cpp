@@ -2,6 +2,8 @@
 #include "scene/import/draco.h"
 
 #include <draco/compression/decode.h>
+#include <draco/core/varint_decoding.h>
+#include <draco/metadata/metadata_decoder.h>
 #include <fmt/format.h>
 
 namespace vernier {
@@ -41,10 +43,57 @@ bool convert_points(const draco::Mesh& mesh, const draco::PointAttribute& attrib
   }
 }
 
+/// A number as that version of the format writes it.
+bool read_number(draco::DecoderBuffer& buffer, uint32_t& value) {
+  if (buffer.bitstream_version() < DRACO_BITSTREAM_VERSION(2, 0)) return buffer.Decode(&value);
+  return draco::DecodeVarint(&value, &buffer);
+}
+
+/// How many faces the data says that it holds, where Draco believes it; nothing where it looks itself or the
+/// header is damaged.
+std::optional<uint32_t> claimed_faces(draco::DecoderBuffer buffer) {
+  draco::DracoHeader header{};
+  if (!buffer.Decode(header.draco_string, 5) || !buffer.Decode(&header.version_major) ||
+      !buffer.Decode(&header.version_minor) || !buffer.Decode(&header.encoder_type) ||
+      !buffer.Decode(&header.encoder_method) || !buffer.Decode(&header.flags))
+    return std::nullopt;
+  if (header.encoder_type != draco::TRIANGULAR_MESH ||
+      header.encoder_method != draco::MESH_EDGEBREAKER_ENCODING)
+    return std::nullopt;
+  const uint16_t version = DRACO_BITSTREAM_VERSION(header.version_major, header.version_minor);
+  buffer.set_bitstream_version(version);
+  draco::GeometryMetadata metadata;
+  if (version >= DRACO_BITSTREAM_VERSION(1, 3) && header.flags & METADATA_FLAG_MASK &&
+      !draco::MetadataDecoder().DecodeGeometryMetadata(&buffer, &metadata))
+    return std::nullopt;
+  uint8_t traversal = 0;
+  if (!buffer.Decode(&traversal)) return std::nullopt;
+  // Before it stand the number of vertices and, in old versions, that of new ones.
+  const int others = version < DRACO_BITSTREAM_VERSION(2, 2) ? 2 : 1;
+  uint32_t number = 0;
+  for (int i = 0; i <= others; ++i)
+    if (!read_number(buffer, number)) return std::nullopt;
+  return number;
+}
+
+/// Draco makes room for all the faces that its data claims to hold, 32 bytes each, before it reads one of
+/// them: a file of 61 bytes asks for gigabytes (google/draco, issue 1169).
+void check_claim(const Document& document, const draco::DecoderBuffer& buffer, const std::string& place) {
+  // A gigabyte with what is made of them later; and half a bit for each face of what has more.
+  constexpr size_t usual = size_t{1} << 23, faces_per_byte = 16;
+  const size_t size = size_t(buffer.remaining_size());
+  const auto faces = claimed_faces(buffer);
+  if (faces && *faces > usual + faces_per_byte * size)
+    document.fail(
+        place, fmt::format("the compressed data is damaged: {} triangles cannot come out of {} bytes", *faces,
+                           size));
+}
+
 std::unique_ptr<draco::Mesh> decode_mesh(const Document& document, int view, const std::string& place) {
   const auto bytes = document.view(view);
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  check_claim(document, buffer, place);
   draco::Decoder decoder;
   auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
   if (!decoded.ok())

@@ -130,6 +130,17 @@ TEST(ImportAccessors, ReadsZerosWithoutABufferView) {
   EXPECT_THAT(import_error(file), HasSubstr("/accessors/0/count: 4000000000 elements without a bufferView"));
 }
 
+/// A file of some hundred bytes would ask for gigabytes, of instances above all.
+TEST(ImportAccessors, ReadsFewZerosForASmallFileAndMoreForALargeOne) {
+  GltfFile file;
+  const int accessor = file.add("accessors", {{"componentType", 5126}, {"count", 3000000}, {"type", "VEC3"}});
+  file.add_mesh({{"POSITION", accessor}});
+  EXPECT_THAT(import_error(file),
+              HasSubstr("3000000 elements without a bufferView; at most 524288 are read"));
+  file.add_view(std::vector<uint8_t>(3000000));
+  EXPECT_EQ(import_error(file), "");
+}
+
 TEST(ImportAccessors, ChecksTypesAndCounts) {
   GltfFile file;
   const int positions = file.add_accessor(GltfFile::triangle_positions(), "VEC3");

@@ -160,5 +160,23 @@ TEST(ImportCompression, RejectsDamagedDraco) {
           "/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression: the compressed data is damaged"));
 }
 
+/// Draco would make room for them all: gigabytes.
+TEST(ImportCompression, RejectsMoreTrianglesThanDracoDataCanHold) {
+  constexpr size_t flags_at = 10, header_size = 11, triangles_at = 13, symbols_at = 15;
+  const std::string many = {'\x80', '\x80', '\x80', '\x80', '\x01'};  // 2^28, seven bits a byte
+  GltfFile file = draco_grid(Grid(3));
+  ASSERT_EQ(file.buffer[triangles_at], 18);
+  file.buffer.replace(symbols_at, 1, many).replace(triangles_at, 1, many);
+  file.json["bufferViews"][0]["byteLength"] = file.buffer.size();
+  const auto complaint =
+      HasSubstr("268435456 triangles cannot come out of " + std::to_string(file.buffer.size()));
+  EXPECT_THAT(import_error(file), complaint);
+  // The same behind metadata that hold nothing: no attributes, no entries, nothing within.
+  file.buffer[flags_at] = '\x80';
+  file.buffer.insert(header_size, 3, '\0');
+  file.json["bufferViews"][0]["byteLength"] = file.buffer.size();
+  EXPECT_THAT(import_error(file), HasSubstr("268435456 triangles cannot come out of "));
+}
+
 }  // namespace
 }  // namespace vernier::test
