@@ -47,13 +47,13 @@ def add_mesh(scene, properties, number, part):
 def add_camera(properties, camera, aspect):
     matrix = numpy.array(camera["to_world"])
     place, back, up = matrix[:3, 3], matrix[:3, 2], matrix[:3, 1]
-    # The angle is that of the picture's shorter side.
-    half = math.tan(math.radians(camera["yfov"]) / 2) * min(aspect, 1)
+    # Which side of the picture the angle is meant for without a window depends on LuxCore's version.
     properties.SetFromString(f"""
         scene.camera.lookat.orig = {words(place)}
         scene.camera.lookat.target = {words(place - back)}
         scene.camera.up = {words(up)}
-        scene.camera.fieldofview = {2 * math.degrees(math.atan(half))}""")
+        scene.camera.fieldofview = {camera["yfov"]}
+        scene.camera.screenwindow = {words((-aspect, aspect, -1, 1))}""")
 
 
 def configuration(job):
