@@ -74,7 +74,10 @@ std::vector<std::string> variant_names(const Document& document) {
 
 InstancePlacer::InstancePlacer(const Document& document, const std::vector<ImportedMaterial>& materials,
                                const std::string& variant)
-    : document_(document), materials_(materials), variant_(find_variant(document, variant)) {}
+    : document_(document),
+      materials_(materials),
+      variant_(find_variant(document, variant)),
+      alike_(document.model()) {}
 
 void InstancePlacer::add_node(int index, const NodePlaces& places, const NodePose& pose) {
   const auto& node = document_.model().nodes[size_t(index)];
@@ -87,14 +90,15 @@ void InstancePlacer::add_node(int index, const NodePlaces& places, const NodePos
       ++result_.empty;
       continue;
     }
-    MeshUse use{node.mesh, int(i), node.skin, {}};
+    const PrimitiveId read = alike_.to_read({node.mesh, int(i)});
+    MeshUse use{read.mesh, read.primitive, node.skin, {}};
     if (!primitive.targets.empty()) use.weights = pose.weights.empty() ? mesh.weights : pose.weights;
     InstanceDescription instance;
     instance.name = node.name;
     instance.material = material_of(primitive);
     if (topology != Topology::triangles)
       instance.material = thin_material_of(instance.material, primitive.attributes.count("NORMAL") > 0);
-    instance.mesh = mesh_of(std::move(use), topology, instance.material);
+    instance.mesh = mesh_of(request_of(std::move(use), topology, instance.material));
     instance.object = first_object_;
     instance.asset = document_.model().nodes[size_t(places.top[size_t(index)])].name;
     // A skinned mesh is where its joints are; its own node does not count (glTF 2.0, 3.7.3.3).
@@ -154,9 +158,7 @@ const ImportedMaterial& InstancePlacer::material_at(uint32_t index) const {
   return index < materials_.size() ? materials_[index] : result_.thin_materials[index - materials_.size()];
 }
 
-uint32_t InstancePlacer::mesh_of(MeshUse use, Topology topology, uint32_t material) {
-  const auto [found, is_new] = meshes_.try_emplace(use, uint32_t(result_.meshes.size()));
-  if (!is_new) return found->second;
+MeshRequest InstancePlacer::request_of(MeshUse use, Topology topology, uint32_t material) const {
   MeshRequest request;
   request.use = std::move(use);
   request.topology = topology;
@@ -171,8 +173,17 @@ uint32_t InstancePlacer::mesh_of(MeshUse use, Topology topology, uint32_t materi
   for_each_texture(reader.description, [&](const TextureUse& texture) {
     if (texture) want(texture);
   });
-  result_.meshes.push_back(std::move(request));
-  return found->second;
+  return request;
+}
+
+uint32_t InstancePlacer::mesh_of(const MeshRequest& request) {
+  const auto [first, last] = meshes_.equal_range(request.use);
+  for (auto known = first; known != last; ++known)
+    if (reads_the_same(result_.meshes[known->second], request)) return known->second;
+  const auto index = uint32_t(result_.meshes.size());
+  meshes_.emplace(request.use, index);
+  result_.meshes.push_back(request);
+  return index;
 }
 
 }  // namespace vernier

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/import/alike_primitives.h"
 #include "scene/import/document.h"
 #include "scene/import/materials.h"
 #include "scene/import/meshes.h"
@@ -20,7 +21,8 @@ std::vector<std::string> variant_names(const Document& document);
 /// materials, or, beyond those, to `thin_materials`.
 struct Placement {
   std::vector<InstanceDescription> instances;
-  std::vector<MeshRequest> meshes;  ///< each shape once, however many nodes use it
+  /// Each primitive once in each shape, however many nodes use it; alike ones once where that spares much.
+  std::vector<MeshRequest> meshes;
   std::vector<ImportedMaterial> thin_materials;
   std::vector<std::string> too_far;  ///< names of nodes whose places do not fit in floats, left out
   size_t empty = 0;                  ///< primitives left out: without positions, or with too few
@@ -43,12 +45,14 @@ class InstancePlacer {
   /// The material for points and lines, which are shown from all sides, and only lit if they have normals.
   uint32_t thin_material_of(uint32_t material, bool lit);
   const ImportedMaterial& material_at(uint32_t index) const;
-  uint32_t mesh_of(MeshUse use, Topology topology, uint32_t material);
+  MeshRequest request_of(MeshUse use, Topology topology, uint32_t material) const;
+  uint32_t mesh_of(const MeshRequest& request);
 
   const Document& document_;
   const std::vector<ImportedMaterial>& materials_;
   int variant_ = -1;
-  std::map<MeshUse, uint32_t> meshes_;
+  AlikePrimitives alike_;
+  std::multimap<MeshUse, uint32_t> meshes_;  ///< several where alike ones are read differently
   std::map<std::pair<uint32_t, bool>, uint32_t> thin_materials_;  ///< of a material and whether it is lit
   Placement result_;
   uint32_t first_object_ = 0;  ///< number of the next object to be placed

@@ -140,6 +140,10 @@ bool same_axes(const std::optional<TextureUse>& a, const std::optional<TextureUs
 
 }  // namespace
 
+bool reads_the_same(const MeshRequest& a, const MeshRequest& b) {
+  return a.texcoords == b.texcoords && same_axes(a.tangent_map, b.tangent_map);
+}
+
 void MeshRepairs::add(const MeshRepairs& other) {
   normals_scaled += other.normals_scaled;
   normals_replaced += other.normals_replaced;
@@ -164,10 +168,7 @@ std::vector<Notice> MeshRepairs::notices() const {
 
 std::shared_ptr<MeshCache::Entry> MeshCache::find(const MeshRequest& request) const {
   const auto found = entries_.find(request.use);
-  if (found == entries_.end()) return nullptr;
-  const MeshRequest& known = found->second->request;
-  const bool same = known.texcoords == request.texcoords && same_axes(known.tangent_map, request.tangent_map);
-  return same ? found->second : nullptr;
+  return found != entries_.end() && reads_the_same(found->second->request, request) ? found->second : nullptr;
 }
 
 void MeshCache::replace(const std::vector<std::shared_ptr<Entry>>& entries) {

@@ -32,6 +32,9 @@ struct MeshRequest {
   std::optional<TextureUse> tangent_map;  ///< the texture whose axes tangents follow; none: they are not read
 };
 
+/// Whether two requests for the same use give the same mesh.
+bool reads_the_same(const MeshRequest& a, const MeshRequest& b);
+
 /// Data that was put right, in counts over all meshes.
 struct MeshRepairs {
   size_t normals_scaled = 0, normals_replaced = 0, tangents_dropped = 0, texcoords_zeroed = 0,
