@@ -63,9 +63,9 @@ std::shared_ptr<const EnvironmentDescription> turned(const Surroundings& surroun
   return environment;
 }
 
+/// Of a picture that is to be read within `max_memory`, of which some is taken already; 0: without.
 ImageLimits limits_within(uint64_t max_memory) {
-  // What reading one takes at its peak, of EXR with halves: 35 bytes a pixel; what stays and its tables are
-  // less.
+  // What reading takes at its peak, of EXR with halves: 35 bytes. What stays, tables included, is less.
   constexpr uint64_t bytes_per_pixel = 36;
   ImageLimits limits;
   if (max_memory == 0) return limits;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <fstream>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/image/image_io.h"
