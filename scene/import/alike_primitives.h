@@ -19,6 +19,7 @@ struct PrimitiveId {
 /// material that it is shown with, by the same accessors, and a thousand copies of it need not be kept.
 class AlikePrimitives {
  public:
+  AlikePrimitives() = default;
   explicit AlikePrimitives(const tinygltf::Model& model);
 
   /// The one to read in place of this one: the first like it where that spares much memory. Else itself, as

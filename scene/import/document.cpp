@@ -74,6 +74,7 @@ Document::Document(AssetFiles files) : files_(std::move(files)) {
   if (!container.binary.empty()) storage_.push_back(std::move(file));
   read_image_sources(root);
   parse_model(root);
+  alike_primitives_ = AlikePrimitives(model_);
   locate_views();
 }
 

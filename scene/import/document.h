@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/import/alike_primitives.h"
 #include "scene/import/asset_files.h"
 #include "scene/import/tinygltf.h"
 #include "vernier/error.h"
@@ -37,6 +38,7 @@ class Document {
 
   const AssetFiles& files() const { return files_; }
   const tinygltf::Model& model() const { return model_; }
+  const AlikePrimitives& alike_primitives() const { return alike_primitives_; }
   const std::vector<ImageSource>& images() const { return images_; }
 
   /// What KHR_animation_pointer may change beyond nodes and meshes: the file's materials, cameras and
@@ -78,6 +80,7 @@ class Document {
 
   AssetFiles files_;
   tinygltf::Model model_;
+  AlikePrimitives alike_primitives_;
   std::shared_ptr<const nlohmann::json> animatable_;
   std::vector<Bytes> storage_;
   std::vector<std::span<const uint8_t>> buffers_, views_;

@@ -74,10 +74,7 @@ std::vector<std::string> variant_names(const Document& document) {
 
 InstancePlacer::InstancePlacer(const Document& document, const std::vector<ImportedMaterial>& materials,
                                const std::string& variant)
-    : document_(document),
-      materials_(materials),
-      variant_(find_variant(document, variant)),
-      alike_(document.model()) {}
+    : document_(document), materials_(materials), variant_(find_variant(document, variant)) {}
 
 void InstancePlacer::add_node(int index, const NodePlaces& places, const NodePose& pose) {
   const auto& node = document_.model().nodes[size_t(index)];
@@ -90,7 +87,7 @@ void InstancePlacer::add_node(int index, const NodePlaces& places, const NodePos
       ++result_.empty;
       continue;
     }
-    const PrimitiveId read = alike_.to_read({node.mesh, int(i)});
+    const PrimitiveId read = document_.alike_primitives().to_read({node.mesh, int(i)});
     MeshUse use{read.mesh, read.primitive, node.skin, {}};
     if (!primitive.targets.empty()) use.weights = pose.weights.empty() ? mesh.weights : pose.weights;
     InstanceDescription instance;

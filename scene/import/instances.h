@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "scene/import/alike_primitives.h"
 #include "scene/import/document.h"
 #include "scene/import/materials.h"
 #include "scene/import/meshes.h"
@@ -51,7 +50,6 @@ class InstancePlacer {
   const Document& document_;
   const std::vector<ImportedMaterial>& materials_;
   int variant_ = -1;
-  AlikePrimitives alike_;
   std::multimap<MeshUse, uint32_t> meshes_;  ///< several where alike ones are read differently
   std::map<std::pair<uint32_t, bool>, uint32_t> thin_materials_;  ///< of a material and whether it is lit
   Placement result_;
