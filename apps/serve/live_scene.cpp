@@ -30,8 +30,9 @@ std::string name_or_number(const std::string& name, size_t number) {
 
 }  // namespace
 
-LiveScene::LiveScene(const std::string& path, const ImportOptions& options)
-    : file_(path, options.allow_outside_files) {}
+LiveScene::LiveScene(const std::string& path, const ImportOptions& options,
+                     std::shared_ptr<const Image> background)
+    : file_(path, options.allow_outside_files), background_(std::move(background)) {}
 
 void LiveScene::build(const RenderRequest& request, NoticeLog& log) {
   const std::string key = building_key(request.flags);
@@ -120,6 +121,7 @@ RenderSettings LiveScene::prepare(const RenderRequest& request, NoticeLog& log) 
   build(request, log);
   const CameraFlags& flags = request.flags.camera;
   RenderSettings settings = request.settings;
+  settings.background.picture = background_;
   settings.camera = place_camera(choose_camera(built_.cameras, flags, log), flags, built_.scene->geometry(),
                                  asked_aspect(request.flags.size), log);
   fill_in_size(settings, settings.camera);

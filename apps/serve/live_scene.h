@@ -25,8 +25,9 @@ struct SeenThing {
 /// A scene file, posed, built and surrounded as views ask for it. One thread changes it, others may look.
 class LiveScene {
  public:
-  /// Throws Error(input).
-  LiveScene(const std::string& path, const ImportOptions& options);
+  /// `background` is the picture behind it, if there is to be one. Throws Error(input).
+  LiveScene(const std::string& path, const ImportOptions& options,
+            std::shared_ptr<const Image> background = nullptr);
 
   const SceneFile& file() const { return file_; }
 
@@ -68,6 +69,7 @@ class LiveScene {
   /// Held by who changes what follows, shared by other threads that look at it.
   mutable std::shared_mutex mutex_;
   SceneFile file_;
+  const std::shared_ptr<const Image> background_;
   Built built_;
   std::string built_for_;
   std::map<std::string, Surroundings> plain_;  ///< those read so far, neither turned nor scaled

@@ -7,8 +7,9 @@
 #include <optional>
 
 #include "apps/vernier/flags.h"
+#include "apps/vernier/memory_limit.h"
 #include "core/base/quantities.h"
-#include "core/image/image_io.h"
+#include "integrators/render/backdrop.h"
 #include "integrators/render/picture.h"
 #include "vernier/error.h"
 
@@ -62,8 +63,10 @@ void add_background_flags(CLI::App& command, BackgroundFlags& flags) {
       ->capture_default_str();
 }
 
-void require_background(const BackgroundFlags& flags) {
-  if (const std::string file = flags.file(); !file.empty()) read_image(file);
+std::shared_ptr<const Image> read_background_picture(const BackgroundFlags& flags, uint64_t max_memory) {
+  const std::string file = flags.file();
+  if (file.empty()) return nullptr;
+  return std::make_shared<const Image>(read_background(file, limits_within(max_memory)));
 }
 
 std::optional<GroundKind> choose_ground(const BackgroundFlags& flags, const std::string& integrator) {

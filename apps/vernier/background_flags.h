@@ -2,6 +2,8 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,9 +29,9 @@ void add_background_flags(CLI::App& command, BackgroundFlags& flags);
 /// What they ask for, with a picture that is there, for outputs that can hold it. Throws Error.
 Background choose_background(const BackgroundFlags& flags, const std::vector<std::string>& outputs);
 
-/// Throws Error(input) unless the picture behind the scene, if there is to be one, can be decoded: before
-/// anything else takes time, for it is read only when rendering begins.
-void require_background(const BackgroundFlags& flags);
+/// The picture behind the scene, for Background::picture; null where there is to be none. Throws
+/// Error(input), also where it has no room within `max_memory` (0: without).
+std::shared_ptr<const Image> read_background_picture(const BackgroundFlags& flags, uint64_t max_memory);
 
 /// The ground asked for. Throws Error(usage) on a shadow with nothing behind it to fall on, or for an
 /// integrator that casts none.

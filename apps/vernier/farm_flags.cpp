@@ -229,7 +229,7 @@ FarmPlan make_farm_plan(const FarmFlags& flags, const CLI::App& command) {
   require_readable(run.scenes.front());
   check_files(request.flags, run);
   read_surroundings(request.flags.surroundings);  // or it throws here rather than in every part
-  require_background(flags.render.background);
+  read_background_picture(request.flags.background, request.flags.import.memory.bytes);
   FarmPlan plan;
   plan.work = fs::current_path().string();
   plan.threads = flags.render.threads;

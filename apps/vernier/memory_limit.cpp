@@ -25,6 +25,17 @@ double pixel_count(const RenderSettings& settings) {
 
 }  // namespace
 
+ImageLimits limits_within(uint64_t max_memory) {
+  // What reading takes at its peak, of EXR with halves: 35 bytes. What stays, tables included, is less.
+  constexpr uint64_t bytes_per_pixel = 36;
+  ImageLimits limits;
+  if (max_memory == 0) return limits;
+  const uint64_t left = max_memory - std::min(max_memory, resident_bytes());
+  limits.max_pixels = std::min(limits.max_pixels, int64_t(left / bytes_per_pixel));
+  limits.advice = "scale it down, or raise --max-memory";
+  return limits;
+}
+
 MemoryLimit leaving_room_for_pictures(MemoryLimit limit, const RenderSettings& settings,
                                       const MemoryUse& use) {
   limit.elsewhere = uint64_t(pixel_count(settings)) * peak_bytes_per_pixel(use);

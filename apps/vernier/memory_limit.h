@@ -2,9 +2,14 @@
 #pragma once
 
 #include "apps/vernier/render_memory.h"
+#include "core/image/image_io.h"
 #include "vernier/settings.h"
 
 namespace vernier::apps {
+
+/// Of pictures around or behind a scene: what can be read within --max-memory (0: without), beside what the
+/// process has.
+ImageLimits limits_within(uint64_t max_memory);
 
 /// What there is for textures: --max-memory, less what the largest of the pictures asked for takes.
 MemoryLimit leaving_room_for_pictures(MemoryLimit limit, const RenderSettings& settings,

@@ -80,7 +80,11 @@ size_t RenderRun::pictures_of_scene() const {
 void RenderRun::prepare() {
   if (std::exchange(is_prepared_, true)) return;
   Stopwatch watch;
-  require_background(request_.flags.background);
+  Background& background = request_.settings.background;
+  background.picture = read_background_picture(request_.flags.background, request_.flags.import.memory.bytes);
+  // A session that makes one of its own size of it begins with a copy.
+  if (background.picture)
+    request_.flags.import.memory.elsewhere += background.picture->values.size() * sizeof(float);
   request_.surroundings = read_surroundings(request_.flags.surroundings, resources_.environments);
   request_.check_seconds += watch.lap();
 }

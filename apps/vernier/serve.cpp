@@ -102,10 +102,10 @@ ExitCode run_serve(const ServeFlags& flags, const CLI::App& command) {
     throw Error(ErrorKind::usage,
                 "--panorama: there is nothing to turn in a picture of all around; leave it out");
   const ThreadLimit threads(flags.render.threads);
-  require_background(flags.render.background);
+  auto background = read_background_picture(flags.render.background, flags.render.import.memory.bytes);
   HttpServer server(flags.host, flags.port);
 
-  LiveScene scene(file, flags.render.import);
+  LiveScene scene(file, flags.render.import, std::move(background));
   const PictureCommand picture(command);
   NoticeLog log(flags.render.quiet);
   const ViewFlags as_given(picture, file, {}, most_pixels);

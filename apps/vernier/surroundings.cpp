@@ -9,8 +9,8 @@
 #include <filesystem>
 
 #include "apps/vernier/flags.h"
+#include "apps/vernier/memory_limit.h"
 #include "core/base/names.h"
-#include "core/base/resident_memory.h"
 #include "core/image/image_io.h"
 #include "integrators/render/visible_light.h"
 #include "scene/camera.h"
@@ -61,18 +61,6 @@ std::shared_ptr<const EnvironmentDescription> turned(const Surroundings& surroun
   auto environment = std::make_shared<EnvironmentDescription>(*surroundings.environment);
   environment->rotation = std::remainder(environment->rotation + heading(view), 2 * pi);
   return environment;
-}
-
-/// Of a picture that is to be read within `max_memory`, of which some is taken already; 0: without.
-ImageLimits limits_within(uint64_t max_memory) {
-  // What reading takes at its peak, of EXR with halves: 35 bytes. What stays, tables included, is less.
-  constexpr uint64_t bytes_per_pixel = 36;
-  ImageLimits limits;
-  if (max_memory == 0) return limits;
-  const uint64_t left = max_memory - std::min(max_memory, resident_bytes());
-  limits.max_pixels = std::min(limits.max_pixels, int64_t(left / bytes_per_pixel));
-  limits.advice = "scale it down, or raise --max-memory";
-  return limits;
 }
 
 }  // namespace

@@ -181,7 +181,7 @@ LayeredImage read_layers(const std::string& path, const ImageLimits& limits) {
   return result;
 }
 
-Image whole_picture(const Image& part, const PicturePlace& place) {
+Image whole_picture(Image part, const PicturePlace& place) {
   if (place.full_width == 0) return part;
   Image whole(place.full_width, place.full_height, part.channels);
   for (int y = 0; y < part.height; ++y)

@@ -34,7 +34,7 @@ Image read_image(const std::string& path, const ImageLimits& limits = {});
 LayeredImage read_layers(const std::string& path, const ImageLimits& limits = {});
 
 /// A part of a picture in its place, and black around it.
-Image whole_picture(const Image& part, const PicturePlace& place);
+Image whole_picture(Image part, const PicturePlace& place);
 
 /// The texts in the header of an image file, whose pixels are not read; empty when it is none. JPEG files
 /// hold them as lines of their description.

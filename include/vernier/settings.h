@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "vernier/image.h"
 #include "vernier/scene.h"
 
 namespace vernier {
@@ -41,6 +43,8 @@ struct Background {
   /// Of a picture, which fills the whole frame, centred, cut where its shape is another. Eight- and
   /// sixteen-bit files hold sRGB values, others scene-linear ones.
   std::string file = {};
+  /// What it holds, scene-linear, where that is at hand; null: a session reads it. Not in to_json().
+  std::shared_ptr<const Image> picture = nullptr;
 };
 
 /// Pixels [x, x + width) x [y, y + height) of the full picture.

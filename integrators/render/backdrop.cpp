@@ -3,17 +3,16 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "core/base/fingerprint.h"
 #include "core/image/fill_frame.h"
-#include "core/image/image_io.h"
 #include "vernier/error.h"
 
 namespace vernier {
-namespace {
 
-/// Scene-linear, and without values that a film refuses.
-Image read_background(const std::string& file) {
-  const LayeredImage read = read_layers(file);
+Image read_background(const std::string& file, const ImageLimits& limits) {
+  const LayeredImage read = read_layers(file, limits);
   Image picture = whole_picture(read.rgb(), read.place);
   for (float& value : picture.values) {
     if (!read.linear) value = srgb_to_linear(value);
@@ -22,11 +21,10 @@ Image read_background(const std::string& file) {
   return picture;
 }
 
-}  // namespace
-
 Backdrop::Backdrop(const RenderSettings& settings) : background_(settings.background) {
-  if (background_.kind == Background::Kind::picture)
-    picture_ = fill_frame(read_background(background_.file), settings.width, settings.height);
+  if (background_.kind != Background::Kind::picture) return;
+  const std::shared_ptr<const Image> read = std::exchange(background_.picture, nullptr);
+  picture_ = fill_frame(read ? *read : read_background(background_.file), settings.width, settings.height);
 }
 
 std::string Backdrop::fingerprint() const {

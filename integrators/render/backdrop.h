@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/film/film.h"
+#include "core/image/image_io.h"
 #include "integrators/integrator.h"
 #include "vernier/image.h"
 #include "vernier/settings.h"
@@ -11,7 +12,8 @@ namespace vernier {
 /// RenderSettings::background, ready to be seen.
 class Backdrop {
  public:
-  /// Of a picture as `settings` describe it. Throws Error(input) when the background's file cannot be read.
+  /// Of a picture as `settings` describe it. Throws Error(input) when the background's file is to be read and
+  /// cannot be.
   explicit Backdrop(const RenderSettings& settings);
 
   /// The film keeps how much of what lies behind would show.
@@ -42,6 +44,10 @@ class Backdrop {
   Background background_;
   Image picture_;  ///< of the full picture's size
 };
+
+/// The picture in a file that is to be a background: scene-linear, and without values that a film refuses.
+/// Throws Error(input).
+Image read_background(const std::string& file, const ImageLimits& limits = {});
 
 /// `options` as an integrator takes them for a picture with this background.
 IntegratorOptions options_for(const Background& background, IntegratorOptions options);

@@ -106,14 +106,16 @@ TEST_F(MaxMemory, RefusesWhatCannotBeDoneWithIt) {
   EXPECT_THAT(picture.err, HasSubstr("--max-memory is 2.15 GB"));
 }
 
-TEST_F(MaxMemory, RefusesASkyBeforeItIsRead) {
+TEST_F(MaxMemory, RefusesPicturesAroundAndBehindASceneBeforeTheyAreRead) {
   const std::string sky = folder_.file("sky.hdr");
   std::ofstream(sky) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4096 +X 8192\n";
-  const ProcessResult result = run_vernier({"render", two_spheres, "-o", folder_.file("a.exr"), "--size",
-                                            "16x16", "--env", sky, "--max-memory", "1G"});
-  EXPECT_EQ(result.exit_code, 3) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("image of 8192x4096 pixels is larger than the limit of "));
-  EXPECT_THAT(result.err, HasSubstr("raise --max-memory"));
+  for (const char* flag : {"--env", "--background"}) {
+    const ProcessResult result = run_vernier({"render", two_spheres, "-o", folder_.file("a.exr"), "--size",
+                                              "16x16", flag, sky, "--max-memory", "1G"});
+    EXPECT_EQ(result.exit_code, 3) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("image of 8192x4096 pixels is larger than the limit of ")) << flag;
+    EXPECT_THAT(result.err, HasSubstr("raise --max-memory")) << flag;
+  }
 }
 
 TEST_F(MaxMemory, TakesAmountsAlone) {

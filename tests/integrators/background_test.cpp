@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <filesystem>
+
 #include "core/image/image_io.h"
 #include "integrators/render/backdrop.h"
 #include "integrators/render/checkpoint.h"
@@ -242,6 +244,9 @@ TEST(Background, APictureFillsTheFrameAndLightsNothing) {
     EXPECT_NEAR(seen.pixel(29, 17)[c], 5 + c, 1e-4);
     EXPECT_NEAR(seen.pixel(16, 10)[c], 0.5, 0.1) << "what is lit";
   }
+  settings.background.picture = std::make_shared<const Image>(read_background(settings.background.file));
+  std::filesystem::remove(settings.background.file);
+  EXPECT_EQ(rendered(scene, settings).image.values, seen.values) << "read before";
 }
 
 TEST(Background, TransparentRendersGoOnAndMerge) {
