@@ -28,7 +28,7 @@ struct Times {
 };
 
 ImportOptions import_options(const std::string& variant, const Times& times, const std::string& animation,
-                             bool strict) {
+                             bool strict, uint64_t max_memory) {
   ImportOptions options;
   options.variant = variant;
   options.time = times.time;
@@ -39,6 +39,8 @@ ImportOptions import_options(const std::string& variant, const Times& times, con
   }
   options.animation = animation;
   options.strict = strict;
+  // Any picture of it may ask for smaller copies of the textures.
+  options.memory = {.bytes = max_memory, .has_mips = true};
   return options;
 }
 
@@ -112,15 +114,17 @@ py::list to_list(const std::vector<T>& all) {
 
 void bind_built(py::module_& module) {
   py::class_<BuiltScene, std::shared_ptr<BuiltScene>>(module, "BuiltScene")
-      .def(py::init([](SceneFile& file, const std::string& variant, std::optional<double> time,
-                       std::optional<std::array<double, 2>> shutter, const std::string& animation,
-                       bool strict, const std::string& ground, const std::string& accelerator) {
-             const py::gil_scoped_release unlocked;
-             const ImportOptions options = import_options(variant, {time, shutter}, animation, strict);
-             return std::make_shared<BuiltScene>(file, options, ground, accelerator);
-           }),
-           py::arg("file"), py::arg("variant"), py::arg("time"), py::arg("shutter"), py::arg("animation"),
-           py::arg("strict"), py::arg("ground"), py::arg("accelerator"))
+      .def(
+          py::init([](SceneFile& file, const std::string& variant, std::optional<double> time,
+                      std::optional<std::array<double, 2>> shutter, const std::string& animation, bool strict,
+                      uint64_t max_memory, const std::string& ground, const std::string& accelerator) {
+            const py::gil_scoped_release unlocked;
+            const ImportOptions options =
+                import_options(variant, {time, shutter}, animation, strict, max_memory);
+            return std::make_shared<BuiltScene>(file, options, ground, accelerator);
+          }),
+          py::arg("file"), py::arg("variant"), py::arg("time"), py::arg("shutter"), py::arg("animation"),
+          py::arg("strict"), py::arg("max_memory"), py::arg("ground"), py::arg("accelerator"))
       .def_readonly("source", &BuiltScene::source)
       .def_readonly("hash", &BuiltScene::hash)
       .def_readonly("objects", &BuiltScene::objects)
@@ -184,6 +188,7 @@ BuiltScene::BuiltScene(SceneFile& file, const ImportOptions& options, const std:
   environment = description.environment;
   features = description.features;
   notices = description.notices;
+  check_scene_size(description, options.memory);
   scene = build_scene(std::move(description), {accelerator});
   const auto& later = notices_of(*scene);
   if (options.strict) refuse_warnings(source, later);

@@ -6,10 +6,8 @@
 
 #include <algorithm>
 
-#include "apps/vernier/scene_summary.h"
 #include "core/base/quantities.h"
 #include "core/base/resident_memory.h"
-#include "scene/scene_bytes.h"
 #include "vernier/error.h"
 
 namespace vernier::apps {
@@ -65,18 +63,6 @@ void check_picture_size(const RenderSettings& options, const MemoryUse& use, con
                             "--max-memory is {}; render parts with --crop, or give it more",
                             format_count(pixels), format_bytes(bytes), format_bytes(taken),
                             format_bytes(double(limit.bytes))));
-}
-
-void check_scene_size(const SceneDescription& scene, const MemoryLimit& limit) {
-  if (limit.bytes == 0) return;
-  const double taken = double(resident_bytes()), more = double(bytes_to_build(scene));
-  if (taken + more <= double(limit.bytes)) return;
-  throw Error(
-      ErrorKind::memory, scene.source, {},
-      fmt::format("to build a scene of {} triangles takes about {} of memory beside {} that are taken, "
-                  "and --max-memory is {}; give it more, or a scene of fewer triangles",
-                  format_count(double(count(scene).triangles)), format_bytes(more), format_bytes(taken),
-                  format_bytes(double(limit.bytes))));
 }
 
 }  // namespace vernier::apps

@@ -3,6 +3,7 @@
 
 #include "apps/vernier/render_memory.h"
 #include "core/image/image_io.h"
+#include "vernier/memory.h"
 #include "vernier/settings.h"
 
 namespace vernier::apps {
@@ -18,9 +19,5 @@ MemoryLimit leaving_room_for_pictures(MemoryLimit limit, const RenderSettings& s
 /// Whether the crop lies in the picture, and what a render of it takes in memory beside what the process has.
 /// Throws Error(usage) or Error(memory).
 void check_picture_size(const RenderSettings& options, const MemoryUse& use, const MemoryLimit& limit);
-
-/// Whether a scene can be built within the limit. Textures are not what is refused, as they can be left in a
-/// file. Throws Error(memory).
-void check_scene_size(const SceneDescription& scene, const MemoryLimit& limit);
 
 }  // namespace vernier::apps

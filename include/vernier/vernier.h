@@ -6,6 +6,7 @@
 
 #include "vernier/error.h"
 #include "vernier/ground.h"
+#include "vernier/memory.h"
 #include "vernier/picture.h"
 #include "vernier/scene.h"
 #include "vernier/scene_file.h"

@@ -45,6 +45,12 @@ class _Reading:
     shutter: tuple[float, float] | None = None
     animation: str = ""
     strict: bool = False
+    max_memory: int | None = None
+
+    def __post_init__(self) -> None:
+        most = self.max_memory
+        if most is not None and (int(most) != most or not 1 <= most < 2**64):
+            raise UsageError(f"max_memory: expected bytes, a whole number from 1 on, got {most}")
 
 
 @dataclass(frozen=True)
@@ -163,7 +169,7 @@ class Scene:
         reading = self._reading
         with self._file_lock:
             built = _core.BuiltScene(self._file, reading.variant, reading.time, reading.shutter, reading.animation,
-                                     reading.strict, kind.ground, kind.accelerator)
+                                     reading.strict, int(reading.max_memory or 0), kind.ground, kind.accelerator)
         if fog := kind.fog:
             built.fill_air(fog.density, fog.albedo, fog.anisotropy, fog.radius)
         return built
@@ -288,7 +294,7 @@ class Request:
 
 def load(source: SceneSource, *, lights: Sequence[Light] = (), cameras: Sequence[Camera] = (), name: str = "",
          variant: str = "", time: float | None = None, shutter: tuple[float, float] | None = None, animation: str = "",
-         strict: bool = False, allow_outside_files: bool = False) -> Scene:
+         strict: bool = False, allow_outside_files: bool = False, max_memory: int | None = None) -> Scene:
     """Reads a scene and builds what answers rays.
 
     Args:
@@ -303,11 +309,16 @@ def load(source: SceneSource, *, lights: Sequence[Light] = (), cameras: Sequence
         animation: name, number or "all"; none: all when no two set the same thing, else the first.
         strict: raise InputError for anything that is not honoured exactly.
         allow_outside_files: the file may refer to others outside its folder.
+        max_memory: bytes that the process may hold with the scene. Textures that do not fit are kept in a file in the
+            folder of TMPDIR, or else /var/tmp, and read as rays meet them: the same picture, later. Pictures come on
+            top (docs/textures.md). None: no limit.
 
     Raises:
         InputError: the scene cannot be used; the text names the file and the place in it.
         UsageError: arrays of wrong shapes or numbers, an unknown variant or animation.
+        OutOfMemoryError: max_memory is too little to build the scene, whatever its textures are.
     """
+    reading = _Reading(variant, time, shutter, animation, strict, max_memory)
     if isinstance(source, (str, os.PathLike)):
         file = _core.SceneFile(os.fspath(source), allow_outside_files)
     elif isinstance(source, (bytes, bytearray, memoryview)):
@@ -315,7 +326,7 @@ def load(source: SceneSource, *, lights: Sequence[Light] = (), cameras: Sequence
     else:
         meshes = [source] if isinstance(source, Mesh) else source
         return load(glb(meshes, lights, cameras), name=name or "meshes", variant=variant, time=time, shutter=shutter,
-                    animation=animation, strict=strict)
+                    animation=animation, strict=strict, max_memory=max_memory)
     if lights or cameras:
         raise UsageError("lights and cameras belong to scenes of meshes; a file has its own")
-    return Scene(file, threading.Lock(), _Reading(variant, time, shutter, animation, strict))
+    return Scene(file, threading.Lock(), reading)
