@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Checkpoints that nobody wrote: with fingerprints made anew, since these are no secret, so that every check
 // behind them is met. A mutant is refused with one line, or is a state from which rendering goes on.
+// MutantSeeds tells how to have more and others.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,6 +18,7 @@
 #include "integrators/render/checkpoint.h"
 #include "integrators/render/checkpoint_file.h"
 #include "scene/camera.h"
+#include "tests/support/effort.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_scenes.h"
 #include "vernier/error.h"
@@ -100,6 +102,16 @@ class CheckpointMutation : public testing::Test {
     }
   }
 
+  /// Calls damage(seed) for each, with random numbers of its own.
+  template <typename Damage>
+  void for_each_mutant(const MutantSeeds& seeds, const Damage& damage) {
+    for (uint64_t seed = seeds.first; seed < seeds.end(); ++seed) {
+      SCOPED_TRACE("seed " + std::to_string(seed));
+      random_.seed(seed);
+      damage(seed);
+    }
+  }
+
   size_t pick(size_t count) { return std::uniform_int_distribution<size_t>(0, count - 1)(random_); }
 
   /// A number, or something else, that somebody might put into a header.
@@ -150,18 +162,18 @@ class CheckpointMutation : public testing::Test {
 TEST_F(CheckpointMutation, PartsPutTogetherAreTheFile) { EXPECT_EQ(Parts(bytes_).join(), bytes_); }
 
 TEST_F(CheckpointMutation, AnyByteChangedOrAnyLength) {
-  for (int i = 0; i < 2000; ++i) {
+  for_each_mutant(MutantSeeds(2000), [&](uint64_t seed) {
     std::string mutant = bytes_;
     // Half of them in the header, which is a hundredth of the file.
     for (size_t change = 0; change <= pick(4); ++change)
-      mutant[pick(i % 2 ? mutant.size() : 1500)] = char(pick(256));
+      mutant[pick(seed % 2 ? mutant.size() : 1500)] = char(pick(256));
     if (mutant != bytes_) {
-      EXPECT_NE(outcome(mutant, false), "") << i;
+      EXPECT_NE(outcome(mutant, false), "");
     }
     mutant = bytes_.substr(0, pick(bytes_.size()));
-    EXPECT_NE(outcome(mutant, false), "") << i;
-    EXPECT_NE(outcome(bytes_ + std::string(1 + pick(100), char(pick(256))), false), "") << i;
-  }
+    EXPECT_NE(outcome(mutant, false), "");
+    EXPECT_NE(outcome(bytes_ + std::string(1 + pick(100), char(pick(256))), false), "");
+  });
 }
 
 TEST_F(CheckpointMutation, HostileHeaders) {
@@ -172,8 +184,9 @@ TEST_F(CheckpointMutation, HostileHeaders) {
       "/arrays",        "/arrays/0",       "/arrays/0/bytes", "/arrays/3/bytes", "/arrays/4/bytes",
       "/arrays/5/name", "/arrays/5/bytes", "/arrays/6/bytes", "/arrays/7/bytes", "/render",
       "/render/0",      "/render/0/1",     "/has_splats",     "/light_batches",  "/bad_light_paths"};
-  int accepted = 0;
-  for (int i = 0; i < 3000; ++i) {
+  const MutantSeeds seeds(3000);
+  uint64_t accepted = 0;
+  for_each_mutant(seeds, [&](uint64_t) {
     Parts parts(bytes_);
     for (size_t change = 0; change <= pick(3); ++change) {
       const Json::json_pointer place(places[pick(places.size())]);
@@ -184,13 +197,14 @@ TEST_F(CheckpointMutation, HostileHeaders) {
         parts.header[place.parent_pointer()] = hostile_value();
     }
     accepted += outcome(parts.join(), true).empty();
-  }
-  EXPECT_GT(accepted, 20) << "else nothing but the first check is met";
+  });
+  EXPECT_GT(accepted, seeds.count / 150) << "else nothing but the first check is met";
 }
 
 TEST_F(CheckpointMutation, HostileArrays) {
-  int accepted = 0;
-  for (int i = 0; i < 2000; ++i) {
+  const MutantSeeds seeds(2000);
+  uint64_t accepted = 0;
+  for_each_mutant(seeds, [&](uint64_t seed) {
     Parts parts(bytes_);
     for (size_t change = 0; change <= pick(3); ++change) {
       std::string& array = parts.arrays[pick(parts.arrays.size())];
@@ -206,9 +220,9 @@ TEST_F(CheckpointMutation, HostileArrays) {
                                    random_()};
       std::memcpy(&array[at], &patterns[pick(std::size(patterns))], width);
     }
-    accepted += outcome(parts.join(), i % 8 == 0).empty();
-  }
-  EXPECT_GT(accepted, 20);
+    accepted += outcome(parts.join(), seed % 8 == 0).empty();
+  });
+  EXPECT_GT(accepted, seeds.count / 100);
 }
 
 TEST_F(CheckpointMutation, PartsBeyondThePassNeverComeToAnEnd) {

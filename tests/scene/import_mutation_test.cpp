@@ -10,8 +10,7 @@
 
 // Damaged scenes: files that use most of what the importer reads, changed at random. Whatever is done to
 // them, they are either read into a scene that can be built and traced, or refused by one Error that names
-// the file; and neither takes memory out of proportion. VERNIER_MUTANTS=N makes N of each kind in place of
-// the few here, VERNIER_FIRST_MUTANT=K begins with the K-th, so that another run makes others.
+// the file; and neither takes memory out of proportion. MutantSeeds tells how to have more and others.
 
 namespace vernier::test {
 namespace {
@@ -50,9 +49,9 @@ void expect_read_or_refused(uint64_t usual, const Make& mutant) {
   constexpr size_t gigabyte = size_t{1} << 30;
   const TemporaryFolder folder;
   const long before = peak_megabytes();
-  const uint64_t count = asked_or("VERNIER_MUTANTS", usual), first = asked_or("VERNIER_FIRST_MUTANT", 0);
+  const MutantSeeds seeds(usual);
   uint64_t read = 0;
-  for (uint64_t seed = first; seed < first + count; ++seed) {
+  for (uint64_t seed = seeds.first; seed < seeds.end(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const std::string bytes = mutant(seed);
     const MemoryWatch memory;
@@ -62,8 +61,8 @@ void expect_read_or_refused(uint64_t usual, const Make& mutant) {
     EXPECT_LE(memory.most(), 10 * bytes.size() + gigabyte);
   }
   // Neither all nor none: otherwise the damage is too little or too great to test anything.
-  EXPECT_GT(read, count / 20);
-  EXPECT_LT(read, count - count / 20);
+  EXPECT_GT(read, seeds.count / 20);
+  EXPECT_LT(read, seeds.count - seeds.count / 20);
   // Of all together, what no allocator sees included. AddressSanitizer keeps up to 256 MB of what was freed.
   EXPECT_LT(peak_megabytes() - before, 1024 + 256);
 }

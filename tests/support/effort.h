@@ -26,4 +26,15 @@ inline uint64_t asked_or(const char* variable, uint64_t usual) {
   return asked ? std::strtoull(asked, nullptr, 10) : usual;
 }
 
+/// Seeds [first, first + count) of the damaged files that a test makes: VERNIER_MUTANTS=N makes N of each
+/// kind in place of the usual few, VERNIER_FIRST_MUTANT=K begins with the K-th: another run makes others.
+struct MutantSeeds {
+  explicit MutantSeeds(uint64_t usual)
+      : first(asked_or("VERNIER_FIRST_MUTANT", 0)), count(asked_or("VERNIER_MUTANTS", usual)) {}
+
+  uint64_t end() const { return first + count; }
+
+  uint64_t first, count;
+};
+
 }  // namespace vernier::test
