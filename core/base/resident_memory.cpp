@@ -8,8 +8,10 @@
 
 namespace vernier {
 
+void give_back_freed_memory() { malloc_trim(0); }
+
 uint64_t resident_bytes() {
-  malloc_trim(0);
+  give_back_freed_memory();
   std::ifstream stream("/proc/self/statm");
   uint64_t all = 0, resident = 0;
   stream >> all >> resident;

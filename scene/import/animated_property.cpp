@@ -155,8 +155,8 @@ bool is_in_file(const Document& document, const AnimationTarget& target) {
   const bool of_node = target.pointer.starts_with("/nodes/");
   if (!of_node && !target.pointer.starts_with("/meshes/")) return has_owner(document, target.pointer);
   int mesh = int(target.indices[0]);
-  if (target.indices[0] >= (of_node ? model.nodes.size() : model.meshes.size())) return false;
-  if (of_node) mesh = model.nodes[target.indices[0]].mesh;
+  if (target.indices[0] >= (of_node ? document.nodes().size() : model.meshes.size())) return false;
+  if (of_node) mesh = document.nodes()[target.indices[0]].mesh;
   if (target.indices.size() < 2) return true;
   return mesh >= 0 && target.indices[1] < morph_target_count(model.meshes[size_t(mesh)]);
 }

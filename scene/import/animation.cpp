@@ -116,7 +116,7 @@ class Poser {
 
   /// Weights of meshes hold for nodes that have none of their own.
   void finish() {
-    const auto& nodes = document_.model().nodes;
+    const auto& nodes = document_.nodes();
     for (size_t i = 0; i < nodes.size(); ++i) {
       const auto animated = mesh_weights_.find(nodes[i].mesh);
       if (animated != mesh_weights_.end() && poses_[i].weights.empty()) poses_[i].weights = animated->second;
@@ -152,7 +152,7 @@ class Poser {
     const size_t node = target.indices[0];
     NodePose& pose = poses_[node];
     if (target.is("/nodes/{}/weights") || target.is("/nodes/{}/weights/{}"))
-      return set_weights(target, value, document_.model().nodes[node].mesh, pose.weights);
+      return set_weights(target, value, document_.nodes()[node].mesh, pose.weights);
     if (target.property->blend == Blend::step) {
       pose.visible = value[0] != 0;
       return;

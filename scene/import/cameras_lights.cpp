@@ -83,7 +83,7 @@ class LightReader {
 };
 
 /// "camera 'front' of node 'rig'", names left out where there are none.
-std::string described(const char* kind, const std::string& name, const tinygltf::Node& node) {
+std::string described(const char* kind, const std::string& name, const FileNode& node) {
   return fmt::format("{}{} of the node{}", kind, name.empty() ? "" : fmt::format(" '{}'", name),
                      node.name.empty() ? "" : fmt::format(" '{}'", node.name));
 }
@@ -132,7 +132,7 @@ void add_cameras_and_lights(const Document& document, const NodePlaces& places, 
   constexpr const char* reason =
       "the node's matrix gives it no direction (a scale of 0, or values too large)";
   for (const int index : places.shown) {
-    const auto& node = document.model().nodes[size_t(index)];
+    const auto& node = document.nodes()[size_t(index)];
     const std::string place = fmt::format("/nodes/{}", index);
     const auto& to_world = places.to_world[size_t(index)];
     const auto use = node.extensions.find("KHR_lights_punctual");

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/fingerprint.h"
+#include "core/base/resident_memory.h"
 #include "scene/import/container.h"
 #include "scene/import/features.h"
 #include "scene/import/json_text.h"
@@ -58,6 +59,9 @@ bool is_meshopt_fallback(const json& buffer) {
     return extensions.contains(name) && extensions[name].value("fallback", false);
   });
 }
+
+/// Strings that are no UTF-8 are mended.
+std::string text_of(const json& tree) { return tree.dump(-1, ' ', false, json::error_handler_t::replace); }
 
 }  // namespace
 
@@ -175,12 +179,35 @@ void Document::parse_model(json& root) {
       if (!accessor.contains("bufferView")) accessor["bufferView"] = no_view;
   root["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 1}});
 
-  const std::string text = root.dump(-1, ' ', false, json::error_handler_t::replace);
+  json nodes = root.contains("nodes") ? std::move(root["nodes"]) : json::array();
+  root.erase("nodes");
+  parse_text(text_of(root), model_);
   root = json();
-  parse_text(text, model_);
+  parse_nodes(std::move(nodes));
   model_.bufferViews.pop_back();
   for (auto& accessor : model_.accessors)
     if (accessor.bufferView == no_view) accessor.bufferView = -1;
+}
+
+void Document::parse_nodes(json nodes) {
+  // In parts, each taken out of the tree before it is given to tinygltf, which makes a tree of its own: of
+  // what a file has, only nodes come in millions.
+  constexpr size_t at_once = 4096, between_trims = 32 * at_once;
+  nodes_.reserve(nodes.size());
+  for (size_t begin = 0; begin < nodes.size(); begin += at_once) {
+    json part{{"asset", {{"version", "2.0"}}}, {"nodes", json::array()}};
+    for (size_t i = begin; i < std::min(nodes.size(), begin + at_once); ++i)
+      part["nodes"].push_back(std::move(nodes[i]));
+    const std::string text = text_of(part);
+    part = json();
+    tinygltf::Model model;
+    parse_text(text, model);
+    for (tinygltf::Node& node : model.nodes)
+      nodes_.push_back({std::move(node.name), node.mesh, node.camera, node.skin, std::move(node.children),
+                        std::move(node.rotation), std::move(node.scale), std::move(node.translation),
+                        std::move(node.matrix), std::move(node.weights), std::move(node.extensions)});
+    if (begin % between_trims == between_trims - at_once) give_back_freed_memory();
+  }
 }
 
 void Document::parse_text(const std::string& text, tinygltf::Model& model) const {
@@ -218,7 +245,7 @@ void Document::set_properties(std::span<const PropertyValue> values) {
     property = value.size() == 1 ? json(value[0]) : json(value);
   }
   tinygltf::Model changed;
-  parse_text(parts.dump(-1, ' ', false, json::error_handler_t::replace), changed);
+  parse_text(text_of(parts), changed);
   model_.materials = std::move(changed.materials);
   model_.cameras = std::move(changed.cameras);
   model_.lights = std::move(changed.lights);

@@ -22,6 +22,16 @@ struct ImageSource {
   int view = -1;
 };
 
+/// What is read of a node: tinygltf's own are twice as large, and files have millions.
+struct FileNode {
+  std::string name;
+  int mesh = -1, camera = -1, skin = -1;
+  std::vector<int> children;
+  std::vector<double> rotation, scale, translation, matrix;  ///< empty: not given
+  std::vector<double> weights;
+  tinygltf::ExtensionMap extensions;
+};
+
 /// A number, or an array of them, that an animation sets.
 struct PropertyValue {
   std::string pointer;  ///< JSON pointer of the property
@@ -30,7 +40,7 @@ struct PropertyValue {
 
 /// A glTF file, parsed and checked against the schema: every type is right, every index in range. tinygltf is
 /// given the JSON without buffers and images, and so never opens a file itself: `model.buffers` and
-/// `model.images` are empty.
+/// `model.images` are empty, and so are `model.nodes`, in whose place nodes() are.
 class Document {
  public:
   /// Reads the scene file and its buffers. Throws Error(input).
@@ -38,6 +48,7 @@ class Document {
 
   const AssetFiles& files() const { return files_; }
   const tinygltf::Model& model() const { return model_; }
+  const std::vector<FileNode>& nodes() const { return nodes_; }
   const AlikePrimitives& alike_primitives() const { return alike_primitives_; }
   const std::vector<ImageSource>& images() const { return images_; }
 
@@ -65,6 +76,7 @@ class Document {
   void read_buffers(const nlohmann::json& json, std::span<const uint8_t> binary_chunk);
   void read_image_sources(const nlohmann::json& json);
   void parse_model(nlohmann::json& json);
+  void parse_nodes(nlohmann::json nodes);
   void parse_text(const std::string& text, tinygltf::Model& model) const;
   /// Gives spot lights without a cone, which tinygltf refuses, the default one.
   void complete_spot_lights(nlohmann::json& root);
@@ -80,6 +92,7 @@ class Document {
 
   AssetFiles files_;
   tinygltf::Model model_;
+  std::vector<FileNode> nodes_;
   AlikePrimitives alike_primitives_;
   std::shared_ptr<const nlohmann::json> animatable_;
   std::vector<Bytes> storage_;

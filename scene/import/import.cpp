@@ -204,7 +204,7 @@ void SceneFile::Content::add_shapes(const ImportOptions& options, bool keep, Sce
 
   append(material_notices_, scene.notices);
   InstancePlacer placer(document_, materials_.materials, options.variant);
-  for (const int node : places.shown) placer.add_node(node, places, poses[size_t(node)]);
+  placer.add_nodes(places, poses);
   Placement placement = placer.take();
   scene.instances = std::move(placement.instances);
   if (placement.empty)

@@ -76,8 +76,14 @@ InstancePlacer::InstancePlacer(const Document& document, const std::vector<Impor
                                const std::string& variant)
     : document_(document), materials_(materials), variant_(find_variant(document, variant)) {}
 
+void InstancePlacer::add_nodes(const NodePlaces& places, const std::vector<NodePose>& poses) {
+  // Most have one instance or none; of a million, growing would take as much again for a while.
+  result_.instances.reserve(places.shown.size());
+  for (const int node : places.shown) add_node(node, places, poses[size_t(node)]);
+}
+
 void InstancePlacer::add_node(int index, const NodePlaces& places, const NodePose& pose) {
-  const auto& node = document_.model().nodes[size_t(index)];
+  const auto& node = document_.nodes()[size_t(index)];
   if (node.mesh < 0) return;
   const auto& mesh = document_.model().meshes[size_t(node.mesh)];
   for (size_t i = 0; i < mesh.primitives.size(); ++i) {
@@ -97,7 +103,7 @@ void InstancePlacer::add_node(int index, const NodePlaces& places, const NodePos
       instance.material = thin_material_of(instance.material, primitive.attributes.count("NORMAL") > 0);
     instance.mesh = mesh_of(request_of(std::move(use), topology, instance.material));
     instance.object = first_object_;
-    instance.asset = document_.model().nodes[size_t(places.top[size_t(index)])].name;
+    instance.asset = document_.nodes()[size_t(places.top[size_t(index)])].name;
     // A skinned mesh is where its joints are; its own node does not count (glTF 2.0, 3.7.3.3).
     if (node.skin >= 0)
       result_.instances.push_back(std::move(instance));
@@ -109,7 +115,7 @@ void InstancePlacer::add_node(int index, const NodePlaces& places, const NodePos
 
 void InstancePlacer::add_instances(int node, const InstanceDescription& prototype, const M44d& to_world) {
   const std::string place = fmt::format("/nodes/{}", node);
-  const auto& extensions = document_.model().nodes[size_t(node)].extensions;
+  const auto& extensions = document_.nodes()[size_t(node)].extensions;
   const auto instancing = extensions.find("EXT_mesh_gpu_instancing");
   const std::vector<M44d> matrices =
       instancing == extensions.end()

@@ -35,10 +35,12 @@ class InstancePlacer {
   InstancePlacer(const Document& document, const std::vector<ImportedMaterial>& materials,
                  const std::string& variant);
 
-  void add_node(int node, const NodePlaces& places, const NodePose& pose);
+  /// Those shown of the places.
+  void add_nodes(const NodePlaces& places, const std::vector<NodePose>& poses);
   Placement take() { return std::move(result_); }
 
  private:
+  void add_node(int node, const NodePlaces& places, const NodePose& pose);
   void add_instances(int node, const InstanceDescription& prototype, const Imath::M44d& to_world);
   uint32_t material_of(const tinygltf::Primitive& primitive) const;
   /// The material for points and lines, which are shown from all sides, and only lit if they have normals.

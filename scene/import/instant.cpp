@@ -30,7 +30,7 @@ Instant instant_at(const PosedDescription& posed, double seconds) {
   instant.places = place_nodes(posed.document, poses);
   add_cameras_and_lights(posed.document, instant.places, instant.seen);
   InstancePlacer placer(posed.document, posed.materials, posed.options.variant);
-  for (const int node : instant.places.shown) placer.add_node(node, instant.places, poses[size_t(node)]);
+  placer.add_nodes(instant.places, poses);
   instant.placement = placer.take();
   return instant;
 }

@@ -13,7 +13,7 @@ using Imath::M44d;
 
 /// Parent of each node, -1 for roots.
 std::vector<int> parents_of(const Document& document) {
-  const auto& nodes = document.model().nodes;
+  const auto& nodes = document.nodes();
   std::vector<int> parents(nodes.size(), -1);
   for (size_t i = 0; i < nodes.size(); ++i)
     for (size_t c = 0; c < nodes[i].children.size(); ++c) {
@@ -53,9 +53,10 @@ std::vector<int> scene_roots(const Document& document, const std::vector<int>& p
 }  // namespace
 
 NodePlaces place_nodes(const Document& document, const std::vector<NodePose>& poses) {
-  const auto& nodes = document.model().nodes;
+  const auto& nodes = document.nodes();
   const std::vector<int> parents = parents_of(document);
   NodePlaces places;
+  places.to_world.reserve(poses.size());
   for (const auto& pose : poses) places.to_world.push_back(pose.to_parent());
   places.top.resize(nodes.size());
   std::vector<bool> reached(nodes.size(), false);

@@ -8,7 +8,7 @@
 namespace vernier {
 namespace {
 
-bool is_visible(const tinygltf::Node& node) {
+bool is_visible(const FileNode& node) {
   const auto visibility = node.extensions.find("KHR_node_visibility");
   if (visibility == node.extensions.end() || !visibility->second.Has("visible")) return true;
   return visibility->second.Get("visible").Get<bool>();
@@ -29,13 +29,15 @@ Imath::M44d NodePose::to_parent() const {
 std::vector<NodePose> rest_pose(const Document& document, std::vector<Notice>& notices) {
   size_t scaled = 0;
   std::vector<NodePose> poses;
-  for (const auto& node : document.model().nodes) {
+  poses.reserve(document.nodes().size());
+  for (const FileNode& node : document.nodes()) {
     NodePose& pose = poses.emplace_back();
     const auto& r = node.rotation;
     if (node.matrix.size() == 16) {
-      pose.matrix.emplace();
       // Columns in the file are rows here.
-      for (int i = 0; i < 16; ++i) (*pose.matrix)[i / 4][i % 4] = node.matrix[size_t(i)];
+      Imath::M44d matrix;
+      for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = node.matrix[size_t(i)];
+      pose.matrix = std::make_shared<const Imath::M44d>(matrix);
     }
     if (r.size() == 4) {
       const Imath::Quatd rotation(r[3], r[0], r[1], r[2]);

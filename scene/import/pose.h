@@ -4,7 +4,7 @@
 #include <ImathMatrix.h>
 #include <ImathQuat.h>
 
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,7 +15,7 @@ namespace vernier {
 
 /// Where a node is in its parent, how far its mesh is morphed, and whether it shows.
 struct NodePose {
-  std::optional<Imath::M44d> matrix;  ///< instead of the three below
+  std::shared_ptr<const Imath::M44d> matrix;  ///< instead of the three below; mostly null
   Imath::V3d translation{0, 0, 0}, scale{1, 1, 1};
   Imath::Quatd rotation;        ///< unit
   std::vector<double> weights;  ///< of morph targets; empty: the mesh's own

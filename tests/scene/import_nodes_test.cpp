@@ -106,6 +106,22 @@ TEST(ImportNodes, RejectsWhatIsNoTree) {
   EXPECT_THAT(import_error(file), HasSubstr("listed twice"));
 }
 
+/// They are read 4096 at a time.
+TEST(ImportNodes, ReadsManyInTheirOrder) {
+  constexpr size_t count = 9000;
+  GltfFile file = mesh_only();
+  for (size_t i = 0; i < count; ++i)
+    file.add_root({{"mesh", 0}, {"name", std::to_string(i)}, {"translation", {i, 0, 0}}});
+  file.json["nodes"][0]["children"] = {file.add("nodes", {{"mesh", 0}, {"translation", {0, 1, 0}}})};
+  const SceneDescription scene = file.import();
+  ASSERT_EQ(scene.instances.size(), count + 1);
+  EXPECT_EQ(scene.instances[1].to_world.origin, Vec3f(0, 1, 0));
+  for (size_t i = 1; i < count; ++i) {
+    EXPECT_EQ(scene.instances[i + 1].name, std::to_string(i));
+    EXPECT_EQ(scene.instances[i + 1].to_world.origin, Vec3f(float(i), 0, 0));
+  }
+}
+
 TEST(ImportNodes, SurvivesLongChains) {
   GltfFile file = mesh_only();
   constexpr int length = 100000;
