@@ -30,10 +30,11 @@ void check_scene_size(const SceneDescription& scene, const MemoryLimit& limit) {
   for (const MeshDescription& mesh : scene.meshes) triangles += mesh.triangles.size();
   throw Error(
       ErrorKind::memory, scene.source, {},
-      fmt::format("to build a scene of {} triangles takes about {} of memory beside {} that are taken, "
-                  "and the limit is {}; give it more, or a scene of fewer triangles",
-                  format_count(double(triangles)), format_bytes(more), format_bytes(taken),
-                  format_bytes(double(limit.bytes))));
+      fmt::format(
+          "to build a scene of {} triangles takes about {} of memory beside {} that are taken, "
+          "and the limit is {}; raise it (--max-memory, max_memory), or take a scene of fewer triangles",
+          format_count(double(triangles)), format_bytes(more), format_bytes(taken),
+          format_bytes(double(limit.bytes))));
 }
 
 }  // namespace vernier

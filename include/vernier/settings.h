@@ -43,7 +43,8 @@ struct Background {
   /// Of a picture, which fills the whole frame, centred, cut where its shape is another. Eight- and
   /// sixteen-bit files hold sRGB values, others scene-linear ones.
   std::string file = {};
-  /// What it holds, scene-linear, where that is at hand; null: a session reads it. Not in to_json().
+  /// What `file` holds, where that is at hand: scene-linear, of three channels, finite and not negative.
+  /// Null: a session reads it. Not in to_json().
   std::shared_ptr<const Image> picture = nullptr;
 };
 

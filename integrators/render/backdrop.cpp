@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/base/fingerprint.h"
@@ -43,6 +45,13 @@ void check(const Background& background) {
                                               color.x, color.y, color.z));
   if (background.kind == Background::Kind::picture && background.file.empty())
     throw Error(ErrorKind::usage, "a background picture needs Background::file");
+  if (!background.picture) return;
+  const Image& picture = *background.picture;
+  const auto is_sound = [](float value) { return value >= 0 && std::isfinite(value); };
+  if (picture.empty() || picture.channels != 3 ||
+      !std::all_of(picture.values.begin(), picture.values.end(), is_sound))
+    throw Error(ErrorKind::usage,
+                "Background::picture must have three channels of finite numbers from 0 on, and pixels");
 }
 
 }  // namespace vernier

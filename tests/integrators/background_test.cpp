@@ -287,6 +287,15 @@ TEST(Background, AnImpossibleOneIsRefused) {
   EXPECT_THROW(RenderSession(scene, settings), Error);
   settings.background.file = "/nowhere/behind.png";
   EXPECT_THROW(RenderSession(scene, settings), Error);
+  Image negative(2, 2, 3), infinite(2, 2, 3);
+  negative.values[5] = -1;
+  infinite.values[7] = std::numeric_limits<float>::infinity();
+  for (const Image& picture : {Image(), Image(2, 2, 1), Image(2, 2, 4), negative, infinite}) {
+    settings.background.picture = std::make_shared<const Image>(picture);
+    EXPECT_THROW(RenderSession(scene, settings), Error);
+  }
+  settings.background.picture = std::make_shared<const Image>(2, 2, 3);
+  EXPECT_NO_THROW(RenderSession(scene, settings));
 }
 
 TEST(Background, SettingsKeepIt) {
